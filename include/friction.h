@@ -1,0 +1,62 @@
+/* stickslip: elastoplastic friction for finite-element codes, C interface.
+ *
+ * Every function is a function of its arguments alone and may be called from any number of threads.
+ * Component 1 is normal, then tangential 1 and 2. Tractions are those that the contact transmits,
+ * positive in tension. On a negative status no argument has been touched. */
+#ifndef STICKSLIP_FRICTION_H
+#define STICKSLIP_FRICTION_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum friction_status {
+    FRICTION_OK = 0,               /* solved, unique */
+    FRICTION_SNAP_BACK = 1,        /* solved, but several equilibria exist: cut the step */
+    FRICTION_BAD_SIZE = -1,        /* an array has the wrong size */
+    FRICTION_BAD_LAW = -2,         /* props[0] names no law */
+    FRICTION_BAD_PROPERTY = -3,    /* a material constant is out of range or not finite */
+    FRICTION_BAD_INCREMENT = -4,   /* du, pressure or dtime out of range or not finite */
+    FRICTION_BAD_STATE = -5,       /* statev holds what no update wrote */
+    FRICTION_NO_CONVERGENCE = -6,  /* no equilibrium found */
+    FRICTION_BAD_NORMAL = -7,      /* the normal is not a unit vector */
+    FRICTION_NULL_POINTER = -8     /* a pointer argument is NULL */
+};
+
+/* Friction update of one contact point.
+ *   ndir      components of du: 2 or 3
+ *   du        increment of relative displacement, ndir numbers [L]
+ *   dtime     increment of time, >= 0 [T]
+ *   nprops    number of material constants
+ *   props     number of the law (1 = subloading), alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m[, mu_0]
+ *   nstatv    number of state variables, 8 or more
+ *   statev    state at the start in, at the end out; all zero = virgin:
+ *             status (0 virgin, 1 stick, 2 slip, 3 open), u_n, u_et1, u_et2, mu, R, slip, dissipated energy
+ *   traction  at the end of the increment, ndir numbers [F/L^2]
+ *   tangent   d(traction)/d(du), ndir x ndir numbers, column-major, unsymmetric [F/L^3]
+ * Returns a friction_status. */
+int friction_update(int ndir, const double *du, double dtime, int nprops, const double *props,
+                    int nstatv, double *statev, double *traction, double *tangent);
+
+/* The tangential part alone, for hosts that hand in the pressure.
+ *   ndir      tangential components: 1 or 2
+ *   du        increment of tangential displacement, ndir numbers [L]
+ *   pressure  at the end of the increment; <= 0 is an open contact [F/L^2]
+ *   tau       tangential traction, ndir numbers [F/L^2]
+ *   dtau_ddu  d(tau)/d(du), ndir x ndir numbers, column-major [F/L^3]
+ *   dtau_dp   d(tau)/d(pressure), ndir numbers [-]
+ * The others as in friction_update. Returns a friction_status. */
+int friction_tangential(int ndir, const double *du, double pressure, double dtime, int nprops, const double *props,
+                        int nstatv, double *statev, double *tau, double *dtau_ddu, double *dtau_dp);
+
+/* What a status says, in one line; the text is constant and not to be freed. */
+const char *friction_message(int status);
+
+/* Version of the library, "major.minor.patch". */
+const char *friction_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,101 @@
+!> C interface: the functions of include/friction.h over `friction_mod`. Pointers are checked and
+!> shaped here, and nothing else.
+module friction_c
+    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
+        c_loc, c_null_char, c_ptr
+    use friction_mod, only : friction_bad_size, friction_null_pointer, friction_tangential, &
+        friction_update, friction_version
+    use friction_status, only : message_length, message_place, messages
+    implicit none
+    private
+
+    public :: c_message, c_tangential, c_update, c_version
+
+    ! C is handed the address of a text, so the constants need a place in memory. Nothing ever
+    ! writes to them.
+    character(len=message_length, kind=c_char), target :: &
+        c_messages(lbound(messages, 1):ubound(messages, 1)) = messages
+    character(len=len(friction_version) + 1, kind=c_char), target :: &
+        c_version_text = friction_version // c_null_char
+
+contains
+
+    !> `friction_update` of include/friction.h.
+    function c_update(ndir, du, dtime, nprops, props, nstatv, statev, traction, tangent) &
+        result(status) bind(C, name='friction_update')
+        integer(c_int), value, intent(in) :: ndir      !! components of du: 2 or 3
+        type(c_ptr), value, intent(in) :: du           !! ndir numbers [L]
+        real(c_double), value, intent(in) :: dtime     !! [T]
+        integer(c_int), value, intent(in) :: nprops    !! number of material constants
+        type(c_ptr), value, intent(in) :: props        !! nprops numbers
+        integer(c_int), value, intent(in) :: nstatv    !! number of state variables
+        type(c_ptr), value, intent(in) :: statev       !! nstatv numbers, in and out
+        type(c_ptr), value, intent(in) :: traction     !! ndir numbers, out [F/L^2]
+        type(c_ptr), value, intent(in) :: tangent  !! ndir x ndir numbers, column-major, out [F/L^3]
+        integer(c_int) :: status
+        real(c_double), pointer :: du_(:), props_(:), statev_(:), traction_(:), tangent_(:, :)
+
+        status = friction_bad_size
+        if (min(ndir, nprops, nstatv) < 0) return
+        status = friction_null_pointer
+        if (.not. (c_associated(du) .and. c_associated(props) .and. c_associated(statev) &
+            .and. c_associated(traction) .and. c_associated(tangent))) return
+        call c_f_pointer(du, du_, [ndir])
+        call c_f_pointer(props, props_, [nprops])
+        call c_f_pointer(statev, statev_, [nstatv])
+        call c_f_pointer(traction, traction_, [ndir])
+        call c_f_pointer(tangent, tangent_, [ndir, ndir])
+        call friction_update(du_, dtime, props_, statev_, traction_, tangent_, status)
+    end function c_update
+
+    !> `friction_tangential` of include/friction.h.
+    function c_tangential(ndir, du, pressure, dtime, nprops, props, nstatv, statev, tau, dtau_ddu, &
+        dtau_dp) result(status) bind(C, name='friction_tangential')
+        integer(c_int), value, intent(in) :: ndir      !! tangential components: 1 or 2
+        type(c_ptr), value, intent(in) :: du           !! ndir numbers [L]
+        real(c_double), value, intent(in) :: pressure  !! at the end of the increment [F/L^2]
+        real(c_double), value, intent(in) :: dtime     !! [T]
+        integer(c_int), value, intent(in) :: nprops    !! number of material constants
+        type(c_ptr), value, intent(in) :: props        !! nprops numbers
+        integer(c_int), value, intent(in) :: nstatv    !! number of state variables
+        type(c_ptr), value, intent(in) :: statev       !! nstatv numbers, in and out
+        type(c_ptr), value, intent(in) :: tau          !! ndir numbers, out [F/L^2]
+        type(c_ptr), value, intent(in) :: dtau_ddu   !! ndir x ndir numbers, column-major, out
+                                                     !! [F/L^3]
+        type(c_ptr), value, intent(in) :: dtau_dp      !! ndir numbers, out [-]
+        integer(c_int) :: status
+        real(c_double), pointer :: du_(:), props_(:), statev_(:), tau_(:), dtau_ddu_(:, :), &
+            dtau_dp_(:)
+
+        status = friction_bad_size
+        if (min(ndir, nprops, nstatv) < 0) return
+        status = friction_null_pointer
+        if (.not. (c_associated(du) .and. c_associated(props) .and. c_associated(statev) &
+            .and. c_associated(tau) .and. c_associated(dtau_ddu) &
+            .and. c_associated(dtau_dp))) return
+        call c_f_pointer(du, du_, [ndir])
+        call c_f_pointer(props, props_, [nprops])
+        call c_f_pointer(statev, statev_, [nstatv])
+        call c_f_pointer(tau, tau_, [ndir])
+        call c_f_pointer(dtau_ddu, dtau_ddu_, [ndir, ndir])
+        call c_f_pointer(dtau_dp, dtau_dp_, [ndir])
+        call friction_tangential(du_, pressure, dtime, props_, statev_, tau_, dtau_ddu_, dtau_dp_, &
+            status)
+    end function c_tangential
+
+    !> `friction_message` of include/friction.h.
+    function c_message(status) result(text) bind(C, name='friction_message')
+        integer(c_int), value, intent(in) :: status
+        type(c_ptr) :: text
+
+        text = c_loc(c_messages(message_place(int(status))))
+    end function c_message
+
+    !> `friction_version` of include/friction.h.
+    function c_version() result(text) bind(C, name='friction_version')
+        type(c_ptr) :: text
+
+        text = c_loc(c_version_text)
+    end function c_version
+
+end module friction_c

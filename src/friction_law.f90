@@ -1,0 +1,121 @@
+!> What a friction law owes the return mapping, and nothing more.
+!>
+!> A law answers two questions about one contact point. While it does not slip: how do its internal
+!> variables evolve, and which tangential traction starts the slip (`rest`)? After it has slid by
+!> `slip` during `dt` under `pressure`: which traction does it carry (`slide`)? The return mapping
+!> (module `friction_return_map`) knows no law by name; adding a law means adding one file in
+!> src/laws/ and one line where laws are chosen.
+module friction_law
+    use friction_kinds, only : wp
+    implicit none
+    private
+
+    public :: law, law_state, sliding
+
+    !> Internal variables of a law at one contact point.
+    type :: law_state
+        real(wp) :: mu = 0.0_wp   !! friction coefficient [-]
+        real(wp) :: r = 0.0_wp   !! internal variable; here the similarity ratio of the subloading
+                                 !! surface [-]
+    end type law_state
+
+    !> A surface that has slid: the result of the return mapping.
+    type :: sliding
+        real(wp) :: slip = 0.0_wp         !! slip in this increment, >= 0 [L]
+        type(law_state) :: state          !! internal variables at the end of the increment
+        real(wp) :: resistance = 0.0_wp   !! tangential traction [F/L^2]
+        real(wp) :: d_slip = 0.0_wp       !! d(resistance)/d(slip) [F/L^3]
+        real(wp) :: d_pressure = 0.0_wp   !! d(resistance)/d(pressure) [-]
+    end type sliding
+
+    type, abstract :: law
+    contains
+        procedure(virgin_interface), deferred :: virgin
+        procedure(admits_interface), deferred :: admits
+        procedure(rest_interface), deferred :: rest
+        procedure(slide_interface), deferred :: slide
+        procedure :: weakening => never_weakens
+        procedure :: solve => not_solved
+    end type law
+
+    abstract interface
+        !> Internal variables of a point that no load has touched.
+        pure function virgin_interface(self) result(state)
+            import :: law, law_state
+            class(law), intent(in) :: self
+            type(law_state) :: state
+        end function virgin_interface
+
+        !> Could these internal variables have come from this law?
+        pure function admits_interface(self, state) result(valid)
+            import :: law, law_state
+            class(law), intent(in) :: self
+            type(law_state), intent(in) :: state   !! finite numbers
+            logical :: valid
+        end function admits_interface
+
+        !> An increment without slip; an open contact has no pressure and carries no traction.
+        pure subroutine rest_interface(self, traction, pressure, dt, old, new, strength)
+            import :: law, law_state, wp
+            class(law), intent(in) :: self
+            real(wp), intent(in) :: traction   !! tangential traction carried elastically, >= 0
+                                               !! [F/L^2]
+            real(wp), intent(in) :: pressure        !! contact pressure, >= 0 [F/L^2]
+            real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
+            type(law_state), intent(in) :: old      !! state at the start of the increment
+            type(law_state), intent(out) :: new   !! state at its end, if the traction is below the
+                                                  !! strength
+            real(wp), intent(out) :: strength   !! tangential traction at which slip starts [F/L^2]
+        end subroutine rest_interface
+
+        !> Resistance after sliding by `slip`, with the derivatives that the consistent tangent
+        !> needs.
+        pure subroutine slide_interface(self, slip, pressure, dt, old, new, resistance, d_slip, &
+            d_pressure)
+            import :: law, law_state, wp
+            class(law), intent(in) :: self
+            real(wp), intent(in) :: slip            !! slip in this increment, >= 0 [L]
+            real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
+            real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
+            type(law_state), intent(in) :: old      !! state at the start of the increment
+            type(law_state), intent(out) :: new     !! state at its end
+            real(wp), intent(out) :: resistance     !! tangential traction [F/L^2]
+            real(wp), intent(out) :: d_slip         !! d(resistance)/d(slip) [F/L^3]
+            real(wp), intent(out) :: d_pressure     !! d(resistance)/d(pressure) [-]
+        end subroutine slide_interface
+    end interface
+
+contains
+
+    !> How fast the resistance can fall with slip: an upper bound of -d(resistance)/d(slip) from slip
+    !> `from` to slip `to`, the tighter the closer the two. Where the contact spring is stiffer, there
+    !> is one equilibrium at most. A law that weakens with slip overrides this.
+    pure function never_weakens(self, from, to, pressure, dt, old) result(bound)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: from, to     !! slips in this increment, 0 <= from < to [L]
+        real(wp), intent(in) :: pressure     !! contact pressure, > 0 [F/L^2]
+        real(wp), intent(in) :: dt           !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old   !! state at the start of the increment
+        real(wp) :: bound                    !! may be negative: then the resistance grows [F/L^3]
+
+        bound = 0.0_wp
+    end function never_weakens
+
+    !> The equilibrium `trial - stiffness*slip = resistance(slip)` by a way of the law's own, where
+    !> it has a fast one. It may give up (`solved` false): the return mapping's own search, slower
+    !> but sure, takes over then.
+    pure subroutine not_solved(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: trial   !! tangential traction without slip, above the strength
+                                        !! [F/L^2]
+        real(wp), intent(in) :: stiffness       !! tangential stiffness, > 0 [F/L^3]
+        real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
+        real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old      !! state at the start of the increment
+        type(sliding), intent(out) :: answer    !! the equilibrium, if solved
+        logical, intent(out) :: solved   !! true only if the answer is exact to round-off and unique
+
+        solved = .false.
+    end subroutine not_solved
+
+end module friction_law

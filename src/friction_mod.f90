@@ -1,0 +1,275 @@
+!> Front door of the library: the friction routine with an FE-interface signature.
+!>
+!> Traction is what the contact transmits, positive in tension; component 1 is normal, then
+!> tangential. See docs/theory.md for the model and docs/user_guide.md for the constants and state
+!> variables. Every procedure here is pure: no saved data, no input or output, no allocation. On a
+!> negative `status` nothing else is touched.
+module friction_mod
+    use friction_contact, only : contact_motion, contact_point, contact_response, contact_springs, &
+        contact_update, point_open, point_slip, point_stick, point_virgin
+    use friction_kinds, only : all_usable, wp
+    use friction_law, only : law, law_state
+    use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
+        friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
+        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back
+    use friction_subloading_law, only : read_subloading_law, subloading_law
+    implicit none
+    private
+
+    public :: friction_update, friction_update_frame, friction_tangential, friction_message, &
+        friction_version
+    public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
+        friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
+        friction_null_pointer, friction_ok, friction_snap_back
+
+    character(len=*), parameter :: friction_version = '0.1.0'   !! semantic version of the library
+
+    !> Laws: values of props(1).
+    integer, parameter, public :: law_subloading = 1
+
+    !> Material constants: places in `props` that all laws share.
+    integer, parameter :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3, first_own_prop = 4
+
+    !> Places in `statev`.
+    integer, parameter, public :: statev_size = 8          !! least size
+    integer, parameter, public :: statev_status = 1        !! 0 virgin, 1 stick, 2 slip, 3 open
+    integer, parameter, public :: statev_u_n = 2           !! normal relative displacement [L]
+    integer, parameter, public :: statev_u_et = 3   !! first elastic tangential displacement [L]
+    integer, parameter, public :: statev_mu = 5            !! friction coefficient [-]
+    integer, parameter, public :: statev_r = 6   !! internal variable of the law, e.g. R [-]
+    integer, parameter, public :: statev_slip = 7          !! accumulated slip [L]
+    integer, parameter, public :: statev_dissipation = 8   !! accumulated dissipated energy per
+                                                           !! area [F/L]
+
+contains
+
+    !> Friction update of a contact point in its own axes (docs/theory.md, sections 3 and 4).
+    pure subroutine friction_update(du, dtime, props, statev, traction, tangent, status)
+        real(wp), intent(in) :: du(:)   !! increment of relative displacement: normal, tangential
+                                        !! 1[, 2];
+                                                  !! size 2 or 3, finite [L]
+        real(wp), intent(in) :: dtime             !! increment of time, >= 0 [T]
+        real(wp), intent(in) :: props(:)   !! material constants: number of the law, alpha_n,
+                                           !! alpha_t, its own
+        real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
+                                               !! zero = virgin
+        real(wp), intent(inout) :: traction(:)  !! T at the end of the increment; size of du [F/L^2]
+        real(wp), intent(inout) :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of du squared
+                                                   !! [F/L^3]
+        integer, intent(out) :: status            !! a named code; `friction_message` gives its text
+        type(contact_motion) :: motion
+        type(contact_response) :: response
+        integer :: n
+
+        n = size(du)
+        if (n < 2 .or. n > 3 .or. size(traction) /= n .or. size(tangent, 1) /= n &
+            .or. size(tangent, 2) /= n) then
+            status = friction_bad_size
+            return
+        end if
+        motion%du(1:n) = du
+        motion%dt = dtime
+        call advance(motion, n - 1, props, statev, response, status)
+        if (status < 0) return
+        traction = response%traction(1:n)
+        tangent = response%tangent(1:n, 1:n)
+    end subroutine friction_update
+
+    !> The same in any orthonormal frame, given the unit normal (the paper's `I - n n` form).
+    !>
+    !> Here statev(2:) holds the vector `u_n n + u_et` in the caller's frame. A host that rotates
+    !> the frame or the normal during an increment rotates these components as it rotates any vector
+    !> of its own.
+    pure subroutine friction_update_frame(du, normal, dtime, props, statev, traction, tangent, &
+        status)
+        real(wp), intent(in) :: du(:)   !! increment of relative displacement, slave seen from
+                                        !! master;
+                                                  !! size 2 or 3, finite [L]
+        real(wp), intent(in) :: normal(:)   !! unit normal from master to slave; size of du [-]
+        real(wp), intent(in) :: dtime             !! increment of time, >= 0 [T]
+        real(wp), intent(in) :: props(:)          !! material constants, as in `friction_update`
+        real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
+                                               !! zero = virgin
+        real(wp), intent(inout) :: traction(:)  !! T at the end of the increment; size of du [F/L^2]
+        real(wp), intent(inout) :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of du squared
+                                                   !! [F/L^3]
+        integer, intent(out) :: status            !! a named code; also `friction_bad_normal`
+        real(wp), parameter :: unit_tolerance = 1.0e-6_wp   !! a normal in single precision still
+                                                            !! passes
+        real(wp) :: axes(3, 3), state(statev_size)
+        type(contact_motion) :: motion
+        type(contact_response) :: response
+        integer :: n
+
+        n = size(du)
+        if (n < 2 .or. n > 3 .or. size(normal) /= n .or. size(traction) /= n &
+            .or. size(tangent, 1) /= n .or. size(tangent, 2) /= n &
+            .or. size(statev) < statev_size) then
+            status = friction_bad_size
+            return
+        end if
+        status = friction_bad_normal
+        if (.not. all_usable(normal)) return
+        if (abs(dot_product(normal, normal) - 1.0_wp) > unit_tolerance) return
+        status = friction_bad_increment
+        if (.not. all_usable(du)) return
+        status = friction_bad_state
+        if (.not. all_usable(statev(1:statev_size))) return
+
+        axes = contact_axes(normal)
+        motion%du(1:n) = matmul(du, axes(1:n, 1:n))
+        motion%dt = dtime
+        state = statev(1:statev_size)
+        state(statev_u_n:statev_u_n + n - 1) = matmul(state(statev_u_n:statev_u_n + n - 1), &
+            axes(1:n, 1:n))
+        call advance(motion, n - 1, props, state, response, status)
+        if (status < 0) return
+        state(statev_u_n:statev_u_n + n - 1) = matmul(axes(1:n, 1:n), &
+            state(statev_u_n:statev_u_n + n - 1))
+        statev(1:statev_size) = state
+        traction = matmul(axes(1:n, 1:n), response%traction(1:n))
+        tangent = matmul(axes(1:n, 1:n), matmul(response%tangent(1:n, 1:n), &
+            transpose(axes(1:n, 1:n))))
+    end subroutine friction_update_frame
+
+    !> Tangential part alone, for hosts that hand in the pressure.
+    !>
+    !> The normal spring is the host's; alpha_n only turns the pressure into the penetration kept in
+    !> statev(2).
+    pure subroutine friction_tangential(du, pressure, dtime, props, statev, tau, dtau_ddu, &
+        dtau_dp, status)
+        real(wp), intent(in) :: du(:)   !! increment of tangential displacement; size 1 or 2,
+                                        !! finite [L]
+        real(wp), intent(in) :: pressure   !! at the end of the increment; <= 0 is an open contact
+                                           !! [F/L^2]
+        real(wp), intent(in) :: dtime              !! increment of time, >= 0 [T]
+        real(wp), intent(in) :: props(:)           !! material constants, as in `friction_update`
+        real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
+                                               !! zero = virgin
+        real(wp), intent(inout) :: tau(:)   !! tangential traction, sign of the slip; size of du
+                                            !! [F/L^2]
+        real(wp), intent(inout) :: dtau_ddu(:, :)  !! d(tau_i)/d(du_j); size of du squared [F/L^3]
+        real(wp), intent(inout) :: dtau_dp(:)      !! d(tau)/d(pressure); size of du [-]
+        integer, intent(out) :: status   !! a named code; `friction_message` gives its text
+        type(contact_motion) :: motion
+        type(contact_response) :: response
+        integer :: n
+
+        n = size(du)
+        if (n < 1 .or. n > 2 .or. size(tau) /= n .or. size(dtau_ddu, 1) /= n &
+            .or. size(dtau_ddu, 2) /= n .or. size(dtau_dp) /= n) then
+            status = friction_bad_size
+            return
+        end if
+        motion%du(2:n + 1) = du
+        motion%dt = dtime
+        motion%pressure_given = .true.
+        motion%pressure = pressure
+        call advance(motion, n, props, statev, response, status)
+        if (status < 0) return
+        tau = response%traction(2:n + 1)
+        dtau_ddu = response%tangent(2:n + 1, 2:n + 1)
+        dtau_dp = response%tangent(2:n + 1, 1)
+    end subroutine friction_tangential
+
+    !> Validates, chooses the law, updates, and writes the state back.
+    pure subroutine advance(motion, n_tangential, props, statev, response, status)
+        type(contact_motion), intent(in) :: motion
+        integer, intent(in) :: n_tangential       !! 1 or 2 tangential components
+        real(wp), intent(in) :: props(:)
+        real(wp), intent(inout) :: statev(:)
+        type(contact_response), intent(out) :: response
+        integer, intent(out) :: status
+        type(subloading_law) :: subloading
+
+        status = friction_bad_size
+        if (size(props) < first_own_prop .or. size(statev) < statev_size) return
+        status = friction_bad_increment
+        if (.not. (all_usable(motion%du) .and. all_usable([motion%dt, motion%pressure]))) return
+        if (motion%dt < 0.0_wp) return
+        status = friction_bad_property
+        if (.not. all_usable(props)) return
+        if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
+
+        select case (law_number(props(prop_law)))
+        case (law_subloading)
+            call read_subloading_law(props(first_own_prop:), subloading, status)
+            if (status < 0) return
+            call update_point(subloading, props, motion, n_tangential, statev, response, status)
+        case default
+            status = friction_bad_law
+        end select
+    end subroutine advance
+
+    !> One point under a law: unpacks `statev`, updates, and packs it again.
+    pure subroutine update_point(surface, props, motion, n_tangential, statev, response, status)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: props(:)
+        type(contact_motion), intent(in) :: motion
+        integer, intent(in) :: n_tangential   !! 1 or 2 tangential components
+        real(wp), intent(inout) :: statev(:)
+        type(contact_response), intent(out) :: response
+        integer, intent(out) :: status
+        type(contact_springs) :: springs
+        type(contact_point) :: old, new
+
+        status = friction_bad_state
+        if (.not. all_usable(statev(1:statev_size))) return
+        old%phase = nint(min(max(statev(statev_status), -1.0_wp), 4.0_wp))
+        if (abs(statev(statev_status) - old%phase) > 0.0_wp) return
+        select case (old%phase)
+        case (point_virgin)
+            if (any(abs(statev(1:statev_size)) > 0.0_wp)) return
+            old%inner = surface%virgin()
+        case (point_stick, point_slip, point_open)
+            old%u_n = statev(statev_u_n)
+            old%u_et(1:n_tangential) = statev(statev_u_et:statev_u_et + n_tangential - 1)
+            old%inner = law_state(mu=statev(statev_mu), r=statev(statev_r))
+            old%slip = statev(statev_slip)
+            old%dissipation = statev(statev_dissipation)
+            if (old%slip < 0.0_wp .or. old%dissipation < 0.0_wp &
+                .or. .not. surface%admits(old%inner)) return
+        case default
+            return
+        end select
+
+        springs = contact_springs(normal=props(prop_alpha_n), tangential=props(prop_alpha_t))
+        call contact_update(surface, springs, motion, old, new, response, status)
+        if (status < 0) return
+        statev(1:statev_size) = [real(new%phase, wp), new%u_n, new%u_et, new%inner%mu, &
+            new%inner%r, new%slip, new%dissipation]
+    end subroutine update_point
+
+    !> The law's number; 0, which is no law, for anything but a small whole number.
+    pure function law_number(prop) result(number)
+        real(wp), intent(in) :: prop
+        integer :: number
+
+        number = nint(min(max(prop, 0.0_wp), 1000.0_wp))
+        if (abs(prop - number) > 0.0_wp) number = 0
+    end function law_number
+
+    !> Orthonormal axes that start with the normal, as columns; tangential ones are as good as any.
+    !> Without a division by a small number for every normal (Duff et al., J. Comput. Graph. Tech.
+    !> 6(1), 2017).
+    pure function contact_axes(normal) result(axes)
+        real(wp), intent(in) :: normal(:)   !! size 2 or 3
+        real(wp) :: axes(3, 3)
+        real(wp) :: n(3), sign_z, a, b
+
+        n = 0.0_wp
+        n(1:size(normal)) = normal / norm2(normal)
+        axes = 0.0_wp
+        axes(:, 1) = n
+        if (size(normal) == 2) then
+            axes(1:2, 2) = [-n(2), n(1)]
+        else
+            sign_z = sign(1.0_wp, n(3))
+            a = -1.0_wp / (sign_z + n(3))
+            b = n(1) * n(2) * a
+            axes(:, 2) = [1.0_wp + sign_z * n(1)**2 * a, sign_z * b, -sign_z * n(1)]
+            axes(:, 3) = [b, sign_z + n(2)**2 * a, -n(2)]
+        end if
+    end function contact_axes
+
+end module friction_mod

@@ -1,0 +1,62 @@
+!> Status codes of the library and what they mean in words. `include/friction.h` mirrors them one to
+!> one.
+module friction_status
+    use, intrinsic :: iso_c_binding, only : c_null_char
+    implicit none
+    private
+
+    public :: friction_message, message_place
+
+    integer, parameter, public :: friction_ok = 0               !! solved, unique
+    integer, parameter, public :: friction_snap_back = 1   !! solved, but several equilibria exist
+    integer, parameter, public :: friction_bad_size = -1        !! an array has the wrong size
+    integer, parameter, public :: friction_bad_law = -2         !! props(1) names no law
+    integer, parameter, public :: friction_bad_property = -3  !! a material constant is out of range
+    integer, parameter, public :: friction_bad_increment = -4  !! du, pressure or dtime out of range
+    integer, parameter, public :: friction_bad_state = -5       !! statev holds what no update wrote
+    integer, parameter, public :: friction_no_convergence = -6  !! no equilibrium found
+    integer, parameter, public :: friction_bad_normal = -7      !! the normal is not a unit vector
+    integer, parameter, public :: friction_null_pointer = -8    !! a pointer from C is NULL
+
+    integer, parameter :: lowest = friction_null_pointer, highest = friction_snap_back, &
+        unknown = highest + 1
+    integer, parameter, public :: message_length = 96
+
+    !> One text a code, ended for C, in the order of the codes; the last is for codes that do not
+    !> exist.
+    character(len=message_length), parameter, public :: messages(lowest:unknown) = &
+        [character(len=message_length) :: &
+        'a pointer argument is NULL' // c_null_char, &
+        'the contact normal is not a unit vector' // c_null_char, &
+        'no equilibrium found: the increment is beyond the range of the arithmetic' &
+        // c_null_char, 'the state variables are out of range or not finite' // c_null_char, &
+        'the increment is out of range or not finite, or dtime < 0' // c_null_char, &
+        'a material constant is out of range or not finite' // c_null_char, &
+        'unknown friction law: props(1) is not the number of a law' // c_null_char, &
+        'an array has the wrong size for the friction routine' // c_null_char, &
+        'success' // c_null_char, &
+        'solved, but several equilibria exist and the contact can snap back: cut the step' &
+        // c_null_char, 'unknown status code' // c_null_char]
+
+contains
+
+    !> What a status code says, in one line.
+    pure function friction_message(status) result(text)
+        integer, intent(in) :: status           !! a code returned by this library
+        character(len=:), allocatable :: text   !! its meaning; says so if the code is unknown
+        integer :: place
+
+        place = message_place(status)
+        text = messages(place)(:index(messages(place), c_null_char) - 1)
+    end function friction_message
+
+    !> Where the text of a code stands in `messages`.
+    pure function message_place(status) result(place)
+        integer, intent(in) :: status
+        integer :: place
+
+        place = status
+        if (status < lowest .or. status > highest) place = unknown
+    end function message_place
+
+end module friction_status
