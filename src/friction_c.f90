@@ -5,7 +5,7 @@ module friction_c
         c_loc, c_null_char, c_ptr
     use friction_mod, only : friction_bad_size, friction_null_pointer, friction_tangential, &
         friction_update, friction_version
-    use friction_status, only : message_length, message_place, messages
+    use friction_status, only : first_message, last_message, message_length, message_place, messages
     implicit none
     private
 
@@ -14,7 +14,7 @@ module friction_c
     ! C is handed the address of a text, so the constants need a place in memory. Nothing ever
     ! writes to them.
     character(len=message_length, kind=c_char), target :: &
-        c_messages(lbound(messages, 1):ubound(messages, 1)) = messages
+        c_messages(first_message:last_message) = messages
     character(len=len(friction_version) + 1, kind=c_char), target :: &
         c_version_text = friction_version // c_null_char
 

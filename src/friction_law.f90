@@ -42,6 +42,7 @@ module friction_law
         !> Internal variables of a point that no load has touched.
         pure function virgin_interface(self) result(state)
             import :: law, law_state
+            implicit none
             class(law), intent(in) :: self
             type(law_state) :: state
         end function virgin_interface
@@ -49,6 +50,7 @@ module friction_law
         !> Could these internal variables have come from this law?
         pure function admits_interface(self, state) result(valid)
             import :: law, law_state
+            implicit none
             class(law), intent(in) :: self
             type(law_state), intent(in) :: state   !! finite numbers
             logical :: valid
@@ -57,6 +59,7 @@ module friction_law
         !> An increment without slip; an open contact has no pressure and carries no traction.
         pure subroutine rest_interface(self, traction, pressure, dt, old, new, strength)
             import :: law, law_state, wp
+            implicit none
             class(law), intent(in) :: self
             real(wp), intent(in) :: traction   !! tangential traction carried elastically, >= 0
                                                !! [F/L^2]
@@ -73,6 +76,7 @@ module friction_law
         pure subroutine slide_interface(self, slip, pressure, dt, old, new, resistance, d_slip, &
             d_pressure)
             import :: law, law_state, wp
+            implicit none
             class(law), intent(in) :: self
             real(wp), intent(in) :: slip            !! slip in this increment, >= 0 [L]
             real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
@@ -87,9 +91,9 @@ module friction_law
 
 contains
 
-    !> How fast the resistance can fall with slip: an upper bound of -d(resistance)/d(slip) from slip
-    !> `from` to slip `to`, the tighter the closer the two. Where the contact spring is stiffer, there
-    !> is one equilibrium at most. A law that weakens with slip overrides this.
+    !> How fast the resistance can fall with slip: an upper bound of -d(resistance)/d(slip) from
+    !> slip `from` to slip `to`, the tighter the closer the two. Where the contact spring is
+    !> stiffer, there is one equilibrium at most. A law that weakens with slip overrides this.
     pure function never_weakens(self, from, to, pressure, dt, old) result(bound)
         class(law), intent(in) :: self
         real(wp), intent(in) :: from, to     !! slips in this increment, 0 <= from < to [L]

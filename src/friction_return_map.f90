@@ -39,7 +39,8 @@ contains
         type(law_state), intent(in) :: old     !! state at the start of the increment
         type(sliding), intent(out) :: answer   !! the equilibrium
         integer, intent(out) :: status         !! ok, snap back, or no convergence
-        real(wp), parameter :: apart = 1.0e-6_wp   !! relative distance of roots that can be told apart
+        real(wp), parameter :: apart = 1.0e-6_wp   !! relative distance of roots that can be told
+                                                   !! apart
         type(spring) :: this
         real(wp) :: low, high
         logical :: solved, found
@@ -66,7 +67,7 @@ contains
         type(spring), intent(in) :: this
         real(wp), intent(in) :: from         !! slip at which the walk starts [L]
         real(wp), intent(out) :: low, high   !! the stretch: slips on either side of the root [L]
-        logical, intent(out) :: found        !! false: no root up to the slip that unloads the spring
+        logical, intent(out) :: found   !! false: no root up to the slip that unloads the spring
         integer, parameter :: max_stretches = 5000
         type(sliding) :: there
         real(wp) :: s_max, width, g_low, g_high, rise

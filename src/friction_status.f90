@@ -18,13 +18,15 @@ module friction_status
     integer, parameter, public :: friction_bad_normal = -7      !! the normal is not a unit vector
     integer, parameter, public :: friction_null_pointer = -8    !! a pointer from C is NULL
 
-    integer, parameter :: lowest = friction_null_pointer, highest = friction_snap_back, &
-        unknown = highest + 1
+    ! Places of the texts below: one a code, and one for what is no code.
+    integer, parameter, public :: first_message = friction_null_pointer
+    integer, parameter :: unknown = friction_snap_back + 1
+    integer, parameter, public :: last_message = unknown
     integer, parameter, public :: message_length = 96
 
     !> One text a code, ended for C, in the order of the codes; the last is for codes that do not
     !> exist.
-    character(len=message_length), parameter, public :: messages(lowest:unknown) = &
+    character(len=message_length), parameter, public :: messages(first_message:last_message) = &
         [character(len=message_length) :: &
         'a pointer argument is NULL' // c_null_char, &
         'the contact normal is not a unit vector' // c_null_char, &
@@ -56,7 +58,7 @@ contains
         integer :: place
 
         place = status
-        if (status < lowest .or. status > highest) place = unknown
+        if (status < first_message .or. status > unknown) place = unknown
     end function message_place
 
 end module friction_status

@@ -113,7 +113,8 @@ contains
             - new%r * self%kappa * c / w**2)
     end subroutine slide
 
-    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one end.
+    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one
+    !> end.
     pure function weakening(self, from, to, pressure, dt, old) result(bound)
         class(subloading_law), intent(in) :: self
         real(wp), intent(in) :: from, to, pressure, dt
@@ -125,7 +126,8 @@ contains
         w0 = 1.0_wp + self%xi * dt
         call similarity_ratio(old%r, self%m * to, r, log_r)
         bound = pressure * (r * self%kappa * c / (w0 + self%kappa * from)**2 &
-            - friction_coefficient(self, w0 + self%kappa * to, c) * ratio_rate(self%m, to, r, log_r))
+            - friction_coefficient(self, w0 + self%kappa * to, c) &
+            * ratio_rate(self%m, to, r, log_r))
     end function weakening
 
     !> Newton's method on the pair (s, R), one logarithm an iteration, from the root of the
