@@ -1,0 +1,145 @@
+!> The command line: what the user asks for.
+module command_line
+    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+    use friction_mod, only : friction_version
+    implicit none
+    private
+
+    public :: command, print_help, print_version, read_command_line
+
+    type :: command
+        character(len=:), allocatable :: verb      !! run, check, --help or --version
+        character(len=:), allocatable :: input     !! namelist file
+        character(len=:), allocatable :: output    !! directory
+        character(len=:), allocatable :: stem      !! of the names of the files that a run writes
+        logical :: plot = .true.
+        logical :: quiet = .false.
+        character(len=:), allocatable :: problem   !! what is wrong with the command line; or empty
+    end type command
+
+contains
+
+    subroutine read_command_line(wanted)
+        type(command), intent(out) :: wanted
+        character(len=:), allocatable :: word
+        integer :: i
+
+        wanted%problem = ''
+        wanted%input = ''
+        wanted%output = ''
+        wanted%verb = argument(1)
+        i = 2
+        select case (wanted%verb)
+        case ('run', 'check')
+            continue
+        case ('--help', '-h', 'help')
+            wanted%verb = '--help'
+            return
+        case ('--version')
+            return
+        case ('')
+            wanted%problem = 'no command given'
+            return
+        case default
+            wanted%problem = "unknown command '" // wanted%verb // "'"
+            return
+        end select
+
+        do while (i <= command_argument_count())
+            word = argument(i)
+            i = i + 1
+            select case (word)
+            case ('--help', '-h')
+                wanted%verb = '--help'
+                return
+            case ('--no-plot')
+                wanted%plot = .false.
+            case ('--quiet')
+                wanted%quiet = .true.
+            case ('--output')
+                wanted%output = argument(i)
+                i = i + 1
+                if (len(wanted%output) == 0) wanted%problem = '--output needs a directory'
+            case default
+                call take_input(wanted, word)
+            end select
+        end do
+        if (len(wanted%problem) > 0) return
+        if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
+        if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
+            .or. .not. wanted%plot)) wanted%problem = 'check takes an input file and nothing else'
+        wanted%stem = stem_of(wanted%input)
+        if (len(wanted%output) == 0) wanted%output = wanted%stem // '_out'
+    end subroutine read_command_line
+
+    subroutine take_input(wanted, word)
+        type(command), intent(inout) :: wanted
+        character(len=*), intent(in) :: word
+
+        if (index(word, '-') == 1) then
+            wanted%problem = "unknown option '" // word // "'"
+        else if (len(wanted%input) > 0) then
+            wanted%problem = "one input file at a time: '" // wanted%input // "' and '" // word &
+                // "'"
+        else
+            wanted%input = word
+        end if
+    end subroutine take_input
+
+    function argument(i) result(word)
+        integer, intent(in) :: i
+        character(len=:), allocatable :: word
+        integer :: length
+
+        call get_command_argument(i, length=length)
+        allocate (character(len=length) :: word)
+        if (length > 0) call get_command_argument(i, word)
+    end function argument
+
+    !> A file's name without its directories and its last extension.
+    pure function stem_of(path) result(stem)
+        character(len=*), intent(in) :: path
+        character(len=:), allocatable :: stem
+        integer :: dot
+
+        stem = path(index(path, '/', back=.true.) + 1:)
+        dot = index(stem, '.', back=.true.)
+        if (dot > 1) stem = stem(:dot - 1)
+    end function stem_of
+
+    subroutine print_version()
+        write (output_unit, '(2a)') 'stickslip ', friction_version
+    end subroutine print_version
+
+    !> To standard output on request, to standard error after a mistake.
+    subroutine print_help(to_error)
+        logical, intent(in) :: to_error
+
+        write (merge(error_unit, output_unit, to_error), '(a)') &
+            'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
+            '       stickslip check INPUT.nml', &
+            '       stickslip --help | --version', &
+            '', &
+            'run    integrates the slider of INPUT.nml; writes STEM.csv, STEM_events.csv and', &
+            '       STEM.png with its script STEM.gp to STEM_out, and a summary on screen', &
+            'check  reads and validates INPUT.nml, and runs nothing', &
+            '', &
+            '--output DIR  where to write', &
+            '--no-plot     draw no picture', &
+            '--quiet       no summary and no progress bar', &
+            '', &
+            'Groups and keys of INPUT.nml, (default), [unit] of force F, length L, time T:', &
+            '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
+            '             kappa [1/L], xi [1/T], m [1/L], mu_0 (mu_s) [-]', &
+            '  &slider    mass [F T^2/L], stiffness [F/L], damping (0) [F T/L], area (1) [L^2],', &
+            '             normal_traction [F/L^2]', &
+            '  &drive     velocity [L/T], duration [T], normal (normal_traction) [F/L^2]:', &
+            '             lists, the i-th values hold for duration(i)', &
+            '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
+            '             max_iterations (25)', &
+            '  &output    interval (1): steps between two rows', &
+            '', &
+            'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'
+    end subroutine print_help
+
+end module command_line

@@ -1,0 +1,126 @@
+!> What the program asks of the operating system: C library calls behind Fortran names.
+module platform
+    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+    use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
+    implicit none
+    private
+
+    public :: exit_program, have_command, is_terminal, make_directory, run_in_directory, seconds, &
+        shell_word
+
+    interface
+        function c_isatty(descriptor) result(answer) bind(C, name='isatty')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: descriptor
+            integer(c_int) :: answer
+        end function c_isatty
+
+        function c_mkdir(path, mode) result(status) bind(C, name='mkdir')
+            import :: c_char, c_int
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            integer(c_int), value, intent(in) :: mode
+            integer(c_int) :: status
+        end function c_mkdir
+
+        function c_access(path, mode) result(status) bind(C, name='access')
+            import :: c_char, c_int
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            integer(c_int), value, intent(in) :: mode
+            integer(c_int) :: status
+        end function c_access
+
+        subroutine c_exit(status) bind(C, name='exit')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: status
+        end subroutine c_exit
+    end interface
+
+contains
+
+    !> Ends the program with an exit status, and without the remarks that `stop` would print.
+    subroutine exit_program(status)
+        integer, intent(in) :: status   !! 0 done, 1 the run failed, 2 bad usage or input
+
+        flush (output_unit)
+        flush (error_unit)
+        call c_exit(int(status, c_int))
+    end subroutine exit_program
+
+    !> Is standard error a terminal?
+    function is_terminal() result(terminal)
+        logical :: terminal
+
+        terminal = c_isatty(2_c_int) == 1
+    end function is_terminal
+
+    !> Makes a directory and those above it, where they do not exist; tells whether it can be
+    !> written to.
+    function make_directory(path) result(made)
+        character(len=*), intent(in) :: path
+        logical :: made
+        integer(c_int), parameter :: for_all = int(o'777', c_int)     ! less the user's umask
+        integer(c_int), parameter :: write_and_search = 3_c_int       ! W_OK + X_OK of unistd.h
+        integer :: i
+        integer(c_int) :: ignored
+
+        do i = 2, len(path)
+            if (path(i:i) == '/') ignored = c_mkdir(path(:i - 1) // c_null_char, for_all)
+        end do
+        ignored = c_mkdir(path // c_null_char, for_all)
+        made = c_access(path // '/.' // c_null_char, write_and_search) == 0
+    end function make_directory
+
+    !> Is there a program of this name?
+    function have_command(name) result(found)
+        character(len=*), intent(in) :: name
+        logical :: found
+        integer :: status, started
+
+        call execute_command_line('command -v ' // name // ' >/dev/null 2>&1', exitstat=status, &
+            cmdstat=started)
+        found = started == 0 .and. status == 0
+    end function have_command
+
+    !> Runs a shell command inside a directory; its output is thrown away.
+    function run_in_directory(directory, command) result(succeeded)
+        character(len=*), intent(in) :: directory, command
+        logical :: succeeded
+        integer :: status, started
+
+        call execute_command_line('cd ' // shell_word(directory) // ' && ' // command &
+            // ' >/dev/null 2>&1', exitstat=status, cmdstat=started)
+        succeeded = started == 0 .and. status == 0
+    end function run_in_directory
+
+    !> A path as one word of the shell, whatever it contains.
+    pure function shell_word(path) result(word)
+        character(len=*), intent(in) :: path
+        character(len=:), allocatable :: word
+        integer :: i
+
+        word = "'"
+        do i = 1, len(path)
+            if (path(i:i) == "'") then
+                word = word // "'\''"
+            else
+                word = word // path(i:i)
+            end if
+        end do
+        word = word // "'"
+        if (path(1:1) == '-') word = './' // word
+    end function shell_word
+
+    !> Wall-clock time [s].
+    function seconds() result(time)
+        real(real64) :: time
+        integer(int64) :: count, rate
+
+        call system_clock(count, rate)
+        time = real(count, real64) / real(rate, real64)
+    end function seconds
+
+end module platform

@@ -1,0 +1,33 @@
+!> stickslip: a spring-slider on the friction routine that finite-element codes use.
+program stickslip
+    use, intrinsic :: iso_fortran_env, only : error_unit
+    use command_line, only : command, print_help, print_version, read_command_line
+    use platform, only : exit_program
+    use run_settings, only : settings
+    use study, only : check_input, exit_bad_input, exit_done, run_input
+    implicit none
+    type(command) :: wanted
+    type(settings) :: run
+    integer :: exit_status
+
+    call read_command_line(wanted)
+    if (len(wanted%problem) > 0) then
+        write (error_unit, '(2a)') 'stickslip: ', wanted%problem
+        call print_help(to_error=.true.)
+        call exit_program(exit_bad_input)
+    end if
+
+    exit_status = exit_done
+    select case (wanted%verb)
+    case ('run')
+        call run_input(wanted, exit_status)
+    case ('check')
+        call check_input(wanted, run, exit_status)
+    case ('--version')
+        call print_version()
+    case default
+        call print_help(to_error=.false.)
+    end select
+    call exit_program(exit_status)
+
+end program stickslip

@@ -1,0 +1,106 @@
+!> What a run has come to, in a screen of text.
+module summary
+    use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
+    use run_settings, only : settings
+    use simulation, only : event_totals, outcome
+    implicit none
+    private
+
+    public :: print_summary
+
+contains
+
+    subroutine print_summary(run, result)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(event_totals) :: all
+        integer :: i
+
+        do i = 1, size(result%pieces)
+            call add(all, result%pieces(i))
+        end do
+        write (output_unit, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
+            ' to time ', result%time, ' [T]'
+        write (output_unit, '(2a, a, i0)') 'Newton iterations  ', &
+            trim(per_step(result%iterations, result%steps)), ' a step, most ', &
+            result%most_iterations
+        if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
+            result%snap_backs, &
+            ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
+        write (output_unit, '(a, i0)') 'slip events        ', all%events
+        call line('mean period        ', all%period, all%recurrences, '[T]')
+        call line('mean stress drop   ', all%force_drop / run%area, all%events, '[F/L^2]')
+        call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')
+        if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
+        call print_energy(result)
+    end subroutine print_summary
+
+    pure function per_step(total, steps) result(text)
+        integer, intent(in) :: total, steps
+        character(len=12) :: text
+
+        write (text, '(f12.2)') real(total, dp) / max(1, steps)
+        text = adjustl(text)
+    end function per_step
+
+    pure subroutine add(all, piece)
+        type(event_totals), intent(inout) :: all
+        type(event_totals), intent(in) :: piece
+
+        all%events = all%events + piece%events
+        all%recurrences = all%recurrences + piece%recurrences
+        all%period = all%period + piece%period
+        all%force_drop = all%force_drop + piece%force_drop
+    end subroutine add
+
+    !> A mean, or a dash where there is nothing to take the mean of.
+    subroutine line(title, total, count, unit)
+        character(len=*), intent(in) :: title, unit
+        real(dp), intent(in) :: total
+        integer, intent(in) :: count
+
+        write (output_unit, '(4a)') title, mean(total, count), ' ', unit
+    end subroutine line
+
+    pure function mean(total, count) result(text)
+        real(dp), intent(in) :: total
+        integer, intent(in) :: count
+        character(len=12) :: text
+
+        text = '-'
+        if (count > 0) write (text, '(es12.5)') total / count
+        text = adjustl(text)
+    end function mean
+
+    !> Period and stress drop against drive velocity, one line a piece of the programme.
+    subroutine print_pieces(run, pieces)
+        type(settings), intent(in) :: run
+        type(event_totals), intent(in) :: pieces(:)
+        integer :: i
+
+        write (output_unit, '(a)') 'from time    velocity     normal       events  period       ' &
+            // 'stress drop  peak velocity'
+        do i = 1, size(pieces)
+            write (output_unit, '(3(es11.4, 2x), i6, 2x, 2(a, 1x), a)') run%drive%start(i), &
+                run%drive%velocity(i), run%drive%normal(i), pieces(i)%events, &
+                mean(pieces(i)%period, pieces(i)%recurrences), &
+                mean(pieces(i)%force_drop / run%area, pieces(i)%events), &
+                mean(pieces(i)%peak_velocity, min(1, pieces(i)%events))
+        end do
+    end subroutine print_pieces
+
+    subroutine print_energy(result)
+        type(outcome), intent(in) :: result
+
+        associate (e => result%energy)
+            write (output_unit, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
+            write (output_unit, '(a, es14.6)') '  kinetic          ', e%kinetic
+            write (output_unit, '(a, es14.6)') '  spring           ', e%spring
+            write (output_unit, '(a, es14.6)') '  contact, elastic ', e%contact
+            write (output_unit, '(a, es14.6)') '  damped           ', e%damped
+            write (output_unit, '(a, es14.6)') '  dissipated       ', e%dissipated
+            write (output_unit, '(a, es14.6)') '  unbalanced       ', e%unbalanced()
+        end associate
+    end subroutine print_energy
+
+end module summary

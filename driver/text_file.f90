@@ -1,0 +1,88 @@
+!> Text files for results, through the C library: gfortran's own output takes a full disk for
+!> success.
+module text_file
+    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
+        c_ptr, c_size_t
+    implicit none
+    private
+
+    public :: output_file
+
+    !> A file that is written line by line. After the first failure nothing more is written.
+    type :: output_file
+        private
+        type(c_ptr) :: stream = c_null_ptr
+        logical, public :: failed = .false.   !! a line could not be written, or the file not opened
+    contains
+        procedure :: create, write_line, flush_lines, finish
+    end type output_file
+
+    interface
+        function c_fopen(name, mode) result(stream) bind(C, name='fopen')
+            import :: c_char, c_ptr
+            implicit none
+            character(kind=c_char), intent(in) :: name(*), mode(*)
+            type(c_ptr) :: stream
+        end function c_fopen
+
+        function c_fwrite(text, item_size, items, stream) result(written) bind(C, name='fwrite')
+            import :: c_char, c_ptr, c_size_t
+            implicit none
+            character(kind=c_char), intent(in) :: text(*)
+            integer(c_size_t), value, intent(in) :: item_size, items
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_size_t) :: written
+        end function c_fwrite
+
+        function c_fflush(stream) result(status) bind(C, name='fflush')
+            import :: c_int, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_int) :: status
+        end function c_fflush
+
+        function c_fclose(stream) result(status) bind(C, name='fclose')
+            import :: c_int, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_int) :: status
+        end function c_fclose
+    end interface
+
+contains
+
+    !> Opens a new file, or empties the one that has the name.
+    subroutine create(self, name)
+        class(output_file), intent(inout) :: self
+        character(len=*), intent(in) :: name
+
+        self%stream = c_fopen(name // c_null_char, 'w' // c_null_char)
+        self%failed = .not. c_associated(self%stream)
+    end subroutine create
+
+    subroutine write_line(self, line)
+        class(output_file), intent(inout) :: self
+        character(len=*), intent(in) :: line
+        integer(c_size_t) :: length
+
+        if (self%failed) return
+        length = len(line, c_size_t) + 1_c_size_t
+        self%failed = c_fwrite(line // new_line('a'), 1_c_size_t, length, self%stream) /= length
+    end subroutine write_line
+
+    !> Hands all lines to the operating system.
+    subroutine flush_lines(self)
+        class(output_file), intent(inout) :: self
+
+        if (.not. self%failed) self%failed = c_fflush(self%stream) /= 0
+    end subroutine flush_lines
+
+    subroutine finish(self)
+        class(output_file), intent(inout) :: self
+
+        if (.not. c_associated(self%stream)) return
+        if (c_fclose(self%stream) /= 0) self%failed = .true.
+        self%stream = c_null_ptr
+    end subroutine finish
+
+end module text_file
