@@ -198,15 +198,15 @@ contains
     end subroutine greater_or_equal_real
 
     !> False for NaN, on either side.
-    function close_to(expected, found, tolerance) result(close)
+    function close_to(expected, found, tolerance) result(near)
         real(real64), intent(in) :: expected, found
         real(real64), intent(in), optional :: tolerance
-        logical :: close
+        logical :: near
         real(real64) :: allowed
 
         allowed = 0.0_real64
         if (present(tolerance)) allowed = tolerance
-        close = abs(expected - found) <= allowed
+        near = abs(expected - found) <= allowed
     end function close_to
 
     function text_i(number) result(text)

@@ -1,0 +1,95 @@
+/* The C interface as a C program sees it: same numbers as the law demands, NULL is a code, texts are texts. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "friction.h"
+
+static int failures = 0;
+
+#define CHECK(condition)                                                       \
+    do {                                                                       \
+        if (!(condition)) {                                                    \
+            fprintf(stderr, "line %d: %s does not hold\n", __LINE__, #condition); \
+            failures++;                                                        \
+        }                                                                      \
+    } while (0)
+
+static const double props[9] = {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3};
+
+static void update_slides_on_the_subloading_surface(void)
+{
+    double statev[8] = {0}, traction[3], tangent[9];
+    const double press[3] = {-2e-3, 0, 0}, slide[3] = {0, 3e-3, 4e-3};
+
+    CHECK(friction_update(3, press, 0.1, 9, props, 8, statev, traction, tangent) == FRICTION_OK);
+    CHECK(traction[0] == -2.0 && statev[0] == 1 && tangent[0] == 1000 && tangent[4] == 800);
+    CHECK(friction_update(3, slide, 0.1, 9, props, 8, statev, traction, tangent) == FRICTION_OK);
+    CHECK(statev[0] == 2);
+    CHECK(fabs(hypot(traction[1], traction[2]) - statev[5] * statev[4] * 2.0) < 1e-14);
+    CHECK(fabs(traction[2] / traction[1] - 4.0 / 3.0) < 1e-14);
+    /* column-major: entry (i,j) at j*3 + i; pressure drives friction, friction does not drive pressure */
+    CHECK(tangent[1] < 0 && tangent[2] < 0 && tangent[3] == 0 && tangent[6] == 0);
+    /* slip + elastic displacement = what was imposed */
+    CHECK(fabs(statev[6] + hypot(statev[2], statev[3]) - 5e-3) < 1e-16);
+}
+
+static void tangential_is_the_same_with_the_pressure_handed_in(void)
+{
+    double a[8] = {0}, b[8] = {0}, traction[2], tangent[4], tau, by_du, by_p;
+    const double press[2] = {-2e-3, 0}, slide[2] = {0, 3e-3}, nothing = 0, along = 3e-3;
+
+    friction_update(2, press, 0.1, 9, props, 8, a, traction, tangent);
+    CHECK(friction_tangential(1, &nothing, 2.0, 0.1, 9, props, 8, b, &tau, &by_du, &by_p) == FRICTION_OK);
+    friction_update(2, slide, 0.1, 9, props, 8, a, traction, tangent);
+    CHECK(friction_tangential(1, &along, 2.0, 0.1, 9, props, 8, b, &tau, &by_du, &by_p) == FRICTION_OK);
+    CHECK(tau == traction[1] && by_du == tangent[3] && fabs(by_p + tangent[1] / 1000) < 1e-15);
+    CHECK(memcmp(a, b, sizeof a) == 0);
+}
+
+static void bad_calls_are_codes_and_touch_nothing(void)
+{
+    double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
+    const double du[3] = {0, 0, 0}, zero[8] = {0};
+
+    CHECK(friction_update(3, NULL, 0, 9, props, 8, statev, traction, tangent) == FRICTION_NULL_POINTER);
+    CHECK(friction_update(3, du, 0, 9, NULL, 8, statev, traction, tangent) == FRICTION_NULL_POINTER);
+    CHECK(friction_update(3, du, 0, 9, props, 8, NULL, traction, tangent) == FRICTION_NULL_POINTER);
+    CHECK(friction_update(3, du, 0, 9, props, 8, statev, NULL, tangent) == FRICTION_NULL_POINTER);
+    CHECK(friction_update(3, du, 0, 9, props, 8, statev, traction, NULL) == FRICTION_NULL_POINTER);
+    CHECK(friction_tangential(2, du, 1, 0, 9, props, 8, statev, traction, tangent, NULL) == FRICTION_NULL_POINTER);
+    CHECK(friction_update(4, du, 0, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_SIZE);
+    CHECK(friction_update(-1, du, 0, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_SIZE);
+    CHECK(friction_update(3, du, 0, 7, props, 8, statev, traction, tangent) == FRICTION_BAD_SIZE);
+    CHECK(friction_update(3, du, 0, 9, props, 7, statev, traction, tangent) == FRICTION_BAD_SIZE);
+    CHECK(friction_update(3, du, -1, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_INCREMENT);
+    CHECK(friction_update(3, du, NAN, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_INCREMENT);
+    memcpy(bad, props, sizeof bad);
+    bad[0] = 999;
+    CHECK(friction_update(3, du, 0, 9, bad, 8, statev, traction, tangent) == FRICTION_BAD_LAW);
+    memcpy(bad, props, sizeof bad);
+    bad[1] = -1;
+    CHECK(friction_update(3, du, 0, 9, bad, 8, statev, traction, tangent) == FRICTION_BAD_PROPERTY);
+    CHECK(memcmp(statev, zero, sizeof statev) == 0 && traction[0] == 7 && tangent[0] == 7);
+    statev[0] = 5;
+    CHECK(friction_update(3, du, 0, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_STATE);
+}
+
+static void texts_are_constant_c_strings(void)
+{
+    CHECK(strcmp(friction_message(FRICTION_OK), "success") == 0);
+    CHECK(strstr(friction_message(FRICTION_NULL_POINTER), "NULL") != NULL);
+    CHECK(strcmp(friction_message(12345), friction_message(-999)) == 0);
+    CHECK(friction_message(FRICTION_OK) == friction_message(FRICTION_OK));
+    CHECK(strcmp(friction_version(), EXPECTED_VERSION) == 0);
+}
+
+int main(void)
+{
+    update_slides_on_the_subloading_surface();
+    tangential_is_the_same_with_the_pressure_handed_in();
+    bad_calls_are_codes_and_touch_nothing();
+    texts_are_constant_c_strings();
+    printf("%d failures\n", failures);
+    return failures != 0;
+}

@@ -1,0 +1,334 @@
+"""The program as a user runs it: good input, bad input, and what it leaves behind.
+
+STICKSLIP names the program.
+"""
+import csv
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ['STICKSLIP']
+INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
+GOOD = {
+    'friction': {'law': "'subloading'", 'alpha_n': '1000', 'alpha_t': '1000', 'mu_s': '0.4',
+                 'mu_k': '0.2', 'kappa': '10', 'xi': '10', 'm': '1000'},
+    'slider': {'mass': '1e-3', 'stiffness': '1', 'damping': '0.01', 'normal_traction': '10'},
+    'drive': {'velocity': '1'},
+    'time': {'t_end': '0.1', 'dt': '1e-3'},
+}
+
+
+def namelist(changes=(), without=()):
+    """A good input with keys changed, {(group, key): text}, and groups or keys left out."""
+    groups = {group: dict(keys) for group, keys in GOOD.items()}
+    for (group, key), value in dict(changes).items():
+        groups.setdefault(group, {})[key] = value
+    for group, key in without:
+        if key is None:
+            del groups[group]
+        else:
+            del groups[group][key]
+    return ''.join(f'&{group}\n' + ''.join(f'  {key} = {value}\n' for key, value in keys.items())
+                   + '/\n' for group, keys in groups.items())
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_program(self, *arguments, **options):
+        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
+                              errors='replace', capture_output=True, timeout=120, check=False,
+                              **options)
+
+    def run_text(self, text, *arguments, verb='run'):
+        (self.folder / 'case.nml').write_text(text)
+        return self.run_program(verb, 'case.nml', *arguments)
+
+    def rows(self, name):
+        with open(self.folder / name, newline='', encoding='utf-8') as file:
+            return list(csv.DictReader(file))
+
+    def refused(self, text, *said):
+        """The input is refused with exit status 2, and the message says all these things."""
+        for verb in ('check', 'run'):
+            result = self.run_text(text, verb=verb)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            for part in said:
+                self.assertIn(part, result.stderr)
+            self.assertIn('case.nml', result.stderr)
+            self.assertEqual(result.stdout, '')
+            self.assertFalse((self.folder / 'case_out').exists())
+
+
+class GoodInput(Program):
+    def test_run_leaves_the_promised_files(self):
+        result = self.run_text(namelist(), '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr, '')
+        rows = self.rows('case_out/case.csv')
+        self.assertEqual(','.join(rows[0]), 'time,drive,displacement,velocity,acceleration,'
+                         'spring_force,friction_force,mu,R,slip')
+        self.assertEqual(len(rows), 101)
+        self.assertEqual([float(rows[0][key]) for key in ('time', 'drive', 'mu', 'R', 'slip')],
+                         [0, 0, 0.4, 0, 0])
+        self.assertEqual(len(rows[7]['velocity'].lstrip('-').split('E')[0].replace('.', '')), 17)
+        events = (self.folder / 'case_out/case_events.csv').read_text()
+        self.assertEqual(events, 'onset,duration,stress_drop,slip,peak_velocity,recurrence_time\n')
+        self.assertIn('unbalanced', result.stdout)
+        self.assertFalse((self.folder / 'case_out/case.png').exists())
+
+    def test_every_row_obeys_the_equation_of_motion(self):
+        self.run_text(namelist({('slider', 'area'): '2.5', ('time', 't_end'): '5'}), '--no-plot')
+        for row in self.rows('case_out/case.csv'):
+            r = {key: float(value) for key, value in row.items()}
+            self.assertAlmostEqual(r['spring_force'], r['drive'] - r['displacement'], delta=1e-13)
+            inertia = 1e-3 * r['acceleration']
+            rest = r['spring_force'] - 0.01 * r['velocity'] - r['friction_force'] - inertia
+            self.assertLess(abs(rest), 1e-9 * (abs(r['spring_force']) + abs(r['friction_force'])
+                                               + abs(inertia)) + 1e-300)
+            self.assertAlmostEqual(abs(r['friction_force']), 2.5 * r['R'] * r['mu'] * 10,
+                                   delta=1e-12)
+
+    def test_rows_are_written_at_the_interval_and_at_the_end(self):
+        self.run_text(namelist({('output', 'interval'): '30'}), '--no-plot')
+        times = [float(row['time']) for row in self.rows('case_out/case.csv')]
+        self.assertEqual([round(1e3 * t) for t in times], [0, 30, 60, 90, 100])
+
+    def test_a_last_step_is_shortened_to_end_on_time(self):
+        self.run_text(namelist({('time', 'dt'): '0.03'}), '--no-plot')
+        times = [float(row['time']) for row in self.rows('case_out/case.csv')]
+        self.assertEqual(len(times), 5)
+        self.assertEqual(times[-1], 0.1)
+
+    def test_drive_follows_its_pieces(self):
+        self.run_text(namelist({('drive', 'velocity'): '1, -2, 0', ('drive', 'duration'): '3*0.02'}),
+                      '--no-plot')
+        rows = self.rows('case_out/case.csv')
+        for step, position in ((10, 0.01), (20, 0.02), (30, 0.0), (40, -0.02), (100, -0.02)):
+            self.assertAlmostEqual(float(rows[step]['drive']), position, delta=1e-15)
+
+    def test_normal_traction_follows_its_pieces(self):
+        self.run_text(namelist({('drive', 'normal'): '10, 0, 20', ('drive', 'duration'): '0.03 0.03 1'}),
+                      '--no-plot')
+        rows = self.rows('case_out/case.csv')
+        self.assertEqual(float(rows[45]['friction_force']), 0.0)
+        self.assertGreater(abs(float(rows[70]['friction_force'])), 0.0)
+
+    def test_output_goes_where_it_is_told_to(self):
+        result = self.run_text(namelist(), '--output', 'deep/er dir', '--no-plot', '--quiet')
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, '', ''))
+        self.assertTrue((self.folder / 'deep/er dir/case.csv').exists())
+
+    def test_picture_is_drawn_with_its_script_beside_it(self):
+        if shutil.which('gnuplot') is None:
+            self.skipTest('gnuplot is not installed')
+        (self.folder / "it's a case.nml").write_text(namelist())
+        result = self.run_program('run', "it's a case.nml")
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        out = self.folder / "it's a case_out"
+        self.assertEqual((out / "it's a case.png").read_bytes()[:4], b'\x89PNG')
+        self.assertTrue((out / "it's a case.gp").exists())
+
+    def test_without_gnuplot_the_run_succeeds_and_says_what_to_install(self):
+        sh_only = self.folder / 'bin'
+        sh_only.mkdir()
+        (sh_only / 'sh').symlink_to(shutil.which('sh'))
+        (self.folder / 'case.nml').write_text(namelist())
+        result = self.run_program('run', 'case.nml', env={**os.environ, 'PATH': str(sh_only)})
+        self.assertEqual(result.returncode, 0)
+        self.assertIn('gnuplot is not installed', result.stderr)
+        self.assertTrue((self.folder / 'case_out/case.gp').exists())
+
+    def test_check_says_that_good_input_is_valid_and_runs_nothing(self):
+        result = self.run_text(namelist(), verb='check')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertIn('valid', result.stdout)
+        self.assertEqual(os.listdir(self.folder), ['case.nml'])
+
+    def test_help_and_version_answer_on_standard_output(self):
+        for arguments in (['--help'], ['run', '--help']):
+            result = self.run_program(*arguments)
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertIn('usage: stickslip run INPUT.nml', result.stdout)
+        result = self.run_program('--version')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertRegex(result.stdout, r'^stickslip \d+\.\d+\.\d+\n$')
+
+
+class BadInput(Program):
+    def test_unknown_key_and_group(self):
+        self.refused(namelist({('slider', 'masss'): '1', ('slides', 'x'): '1'}),
+                     '&slider masss: unknown key', '&slides: unknown group')
+
+    def test_missing_groups_and_keys(self):
+        self.refused(namelist(without=[('drive', None), ('slider', 'mass')]),
+                     'group &drive is missing', '&slider mass: is missing')
+
+    def test_empty_file(self):
+        self.refused('', 'group &friction is missing', 'group &slider is missing',
+                     'group &drive is missing', 'group &time is missing')
+
+    def test_wrong_types(self):
+        self.refused(namelist({('slider', 'mass'): "'heavy'", ('time', 'dt'): 'fast',
+                               ('friction', 'law'): 'subloading', ('output', 'interval'): '1.5',
+                               ('time', 'max_iterations'): '1e30', ('slider', 'area'): '1, 2'}),
+                     "&slider mass = 'heavy': must be a number", '&time dt = fast: must be a number',
+                     '&friction law = subloading: must be text in quotes',
+                     '&output interval = 1.5: must be a whole number',
+                     '&time max_iterations = 1e30', '&slider area: takes one value, not 2')
+
+    def test_values_out_of_range(self):
+        self.refused(namelist({('slider', 'stiffness'): '-1', ('slider', 'mass'): '0',
+                               ('friction', 'alpha_t'): '0', ('friction', 'xi'): '-1',
+                               ('time', 'beta'): '0', ('time', 'gamma'): '0.4',
+                               ('output', 'interval'): '0', ('friction', 'law'): "'magic'"}),
+                     '&slider stiffness = -1: must be > 0', '&slider mass = 0: must be > 0',
+                     '&friction alpha_t = 0: must be > 0', '&friction xi = -1: must be >= 0',
+                     '&time beta = 0: must be from', '&time gamma = 0.4: must be from',
+                     '&output interval = 0: must be >= 1', "&friction law = 'magic': must be")
+
+    def test_numbers_that_are_none(self):
+        self.refused(namelist({('slider', 'mass'): 'NaN', ('time', 't_end'): 'Inf',
+                               ('drive', 'velocity'): '1, -Infinity', ('slider', 'area'): '1e999'}),
+                     '&slider mass = NaN: must be finite', '&time t_end = Inf: must be finite',
+                     '&drive velocity = -Infinity: must be finite', '&slider area = 1e999')
+
+    def test_constants_that_contradict_each_other(self):
+        self.refused(namelist({('friction', 'mu_s'): '0.1'}), '&friction mu_s = 0.1: must be >= mu_k')
+        self.refused(namelist({('friction', 'mu_0'): '0.9'}), '&friction mu_0 = 0.9: must be from mu_k')
+        self.refused(namelist({('friction', 'm'): '1e200'}), '&friction')
+
+    def test_keys_and_groups_given_twice(self):
+        self.refused(namelist().replace('mass', 'mass = 1\n mass'), '&slider mass', 'is given twice')
+        self.refused(namelist() + '&drive velocity = 1 /\n', 'group &drive is given twice')
+
+    def test_lists_that_do_not_fit_together(self):
+        self.refused(namelist({('drive', 'velocity'): '1, 2, 3', ('drive', 'duration'): '1, 2'}),
+                     '&drive duration: must have 3 values')
+        self.refused(namelist({('drive', 'velocity'): '1, 2'}), '&drive duration: must have 2 values')
+        self.refused(namelist({('drive', 'velocity'): '1, 2', ('drive', 'duration'): '3*1'}),
+                     '&drive velocity: must have one value or 3 values')
+        self.refused(namelist({('drive', 'velocity'): '1, 2', ('drive', 'duration'): '1, -1'}),
+                     '&drive duration = -1: must be > 0')
+
+    def test_more_steps_than_can_be_counted(self):
+        self.refused(namelist({('time', 'dt'): '1e-12', ('time', 't_end'): '1e5'}), '&time dt = 1e-12',
+                     'more steps')
+        self.refused(namelist({('time', 'dt'): '1'}), '&time dt = 1: must not exceed t_end')
+
+    def test_syntax_faults_are_named_with_their_lines(self):
+        self.refused(namelist() + 'stray words\n&output interval 3 /\n', ":24: text outside any group",
+                     ":25: &output interval: expected '='")
+        self.refused(namelist().rstrip('\n/'), "group &time is not ended by '/'")
+
+    def test_every_fault_is_listed_not_only_the_first(self):
+        result = self.run_text(namelist({('slider', 'mass'): '-1', ('slider', 'x'): '1',
+                                         ('time', 'dt'): 'z'}, without=[('friction', 'm')]))
+        self.assertEqual(len(result.stderr.splitlines()), 4, result.stderr)
+
+    def test_no_such_file_and_a_directory(self):
+        for verb in ('run', 'check'):
+            result = self.run_program(verb, 'nowhere.nml')
+            self.assertEqual(result.returncode, 2)
+            self.assertIn('nowhere.nml', result.stderr)
+            result = self.run_program(verb, '.')
+            self.assertEqual(result.returncode, 2)
+
+    def test_binary_rubbish(self):
+        (self.folder / 'case.nml').write_bytes(bytes(range(256)) * 20)
+        result = self.run_program('check', 'case.nml')
+        self.assertEqual(result.returncode, 2)
+
+    def test_output_directory_that_cannot_be(self):
+        (self.folder / 'file').write_text('')
+        result = self.run_text(namelist(), '--output', 'file/below')
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("cannot write to the directory 'file/below'", result.stderr)
+        result = self.run_text(namelist(), '--output', '/proc')
+        self.assertEqual(result.returncode, 2)
+        self.assertNotEqual(result.stderr, '')
+
+    def test_bad_usage_shows_the_usage(self):
+        for arguments in ([], ['walk'], ['run'], ['run', 'a.nml', 'b.nml'], ['run', '--fast', 'a.nml'],
+                          ['run', 'a.nml', '--output'], ['check', 'a.nml', '--no-plot']):
+            result = self.run_program(*arguments)
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertIn('usage: stickslip', result.stderr)
+            self.assertEqual(result.stdout, '')
+
+
+class FailedRun(Program):
+    def test_a_run_that_fails_says_when_and_keeps_what_it_has(self):
+        result = self.run_text(namelist({('time', 't_end'): '10', ('time', 'dt'): '0.05',
+                                         ('time', 'max_iterations'): '4'}), '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: ')
+        self.assertGreater(len(self.rows('case_out/case.csv')), 5)
+
+    def test_a_full_disk_is_a_failed_run(self):
+        small = self.folder / 'case_out'
+        small.mkdir()
+        mounted = subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=100k', 'small', str(small)],
+                                 capture_output=True, check=False)
+        if mounted.returncode != 0:
+            self.skipTest('needs the right to mount a small file system')
+        self.addCleanup(subprocess.run, ['umount', str(small)], check=True)
+        result = self.run_text(namelist({('time', 't_end'): '5'}), '--no-plot')
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn('cannot write the time series', result.stderr)
+        self.assertGreater(len(self.rows('case_out/case.csv')), 100)
+
+
+class ShippedInputs(Program):
+    """The files in inputs/ run as they stand and show what they are there to show."""
+
+    def shipped(self, name):
+        result = self.run_program('run', INPUTS / f'{name}.nml', '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        return result.stdout
+
+    def events(self, name):
+        return [{key: float(value) for key, value in row.items()}
+                for row in self.rows(f'{name}_out/{name}_events.csv')]
+
+    def test_all_shipped_inputs_are_valid(self):
+        for path in INPUTS.glob('*.nml'):
+            result = self.run_program('check', path)
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+
+    def test_stick_slip_goes_on_with_one_period(self):
+        self.shipped('stick_slip')
+        events = self.events('stick_slip')
+        self.assertGreater(len(events), 15)
+        periods = [event['recurrence_time'] for event in events]
+        self.assertTrue(math.isnan(periods[0]))
+        self.assertLess(max(periods[1:]) - min(periods[1:]), 0.01 * periods[1])
+        for event in events:   # drops are sudden: short against the stick before them
+            self.assertLess(event['duration'], 0.1 * periods[1])
+            self.assertGreater(event['stress_drop'], 0.5 * 0.4 * 0.01)
+            self.assertGreater(event['peak_velocity'], 10.0)
+
+    def test_slow_steady_settles_at_the_closed_form(self):
+        self.shipped('slow_steady')
+        self.assertEqual(self.events('slow_steady'), [])
+        last = self.rows('slow_steady_out/slow_steady.csv')[-1]
+        self.assertAlmostEqual(float(last['mu']), (10 * 0.1 * 0.2 + 1 * 0.4) / (10 * 0.1 + 1), delta=1e-6)
+        self.assertAlmostEqual(float(last['velocity']), 0.1, delta=1e-6)
+
+    def test_period_and_drop_fall_with_the_drive_velocity(self):
+        table = self.shipped('velocity_steps').split('peak velocity\n')[-1].splitlines()[:4]
+        period = [float(line.split()[4]) for line in table]
+        drop = [float(line.split()[5]) for line in table]
+        self.assertEqual(period, sorted(period, reverse=True))
+        self.assertEqual(drop, sorted(drop, reverse=True))
+        self.assertLess(drop[3], 0.5 * drop[0])
+
+
+if __name__ == '__main__':
+    unittest.main()
