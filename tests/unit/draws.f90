@@ -1,6 +1,6 @@
 !> Random contact points for the tests, the same in every run.
 module draws
-    use reference_update, only : dp
+    use, intrinsic :: iso_fortran_env, only : dp => real64
     implicit none
     private
 

@@ -2,13 +2,12 @@
 !> evolution law gives the slip explicitly from R, and plain bisection on R solves the rest. Slow,
 !> simple, and to 30 digits.
 module reference_update
-    use, intrinsic :: iso_fortran_env, only : real64, real128
+    use, intrinsic :: iso_fortran_env, only : dp => real64, real128
     implicit none
     private
 
     public :: count_equilibria, reference_tangent, reference_traction
 
-    integer, parameter, public :: dp = real64
     integer, parameter, public :: qp = real128
 
     !> The scalar equation of an increment that slips.
