@@ -1,0 +1,140 @@
+!> What several adapters need between a host and `friction_mod`. No physics.
+module friction_host
+    use friction_kinds, only : wp
+    use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
+        friction_snap_back, friction_update, statev_r, statev_status, statev_u_et, statev_u_n
+    implicit none
+    private
+
+    public :: cut_factor, elastic_energy, error_text, forget_elastic, interface_update, &
+        rotate_tangential
+
+    integer, parameter, public :: error_length = 500   !! what Abaqus wants
+
+    public :: stdb_abqerr, xplb_abqerr
+
+    interface
+        !> Abaqus/Standard's utility for messages; lop = -3 ends the job.
+        subroutine stdb_abqerr(lop, text, intv, realv, charv)
+            import :: wp
+            implicit none
+            integer, intent(in) :: lop              !! kind of the message
+            character(len=500), intent(in) :: text  !! the message
+            integer, intent(in) :: intv(*)          !! numbers and words that the text may quote
+            real(wp), intent(in) :: realv(*)
+            character(len=8), intent(in) :: charv(*)
+        end subroutine stdb_abqerr
+
+        !> The same of Abaqus/Explicit.
+        subroutine xplb_abqerr(lop, text, intv, realv, charv)
+            import :: wp
+            implicit none
+            integer, intent(in) :: lop              !! kind of the message
+            character(len=500), intent(in) :: text  !! the message
+            integer, intent(in) :: intv(*)          !! numbers and words that the text may quote
+            real(wp), intent(in) :: realv(*)
+            character(len=8), intent(in) :: charv(*)
+        end subroutine xplb_abqerr
+    end interface
+
+contains
+
+    !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u.
+    pure subroutine rotate_tangential(drot, statev)
+        real(wp), intent(in) :: drot(2, 2)       !! rotation of the axes in this increment [-]
+        real(wp), intent(inout) :: statev(:)     !! state at the start of the increment
+
+        statev(statev_u_et:statev_u_et + 1) = matmul(drot, statev(statev_u_et:statev_u_et + 1))
+    end subroutine rotate_tangential
+
+    !> The contact was open since the last call: what was stored elastically is gone.
+    pure subroutine forget_elastic(statev)
+        real(wp), intent(inout) :: statev(:)   !! state at the start of the increment
+
+        statev(statev_u_et:statev_u_et + 1) = 0.0_wp
+        statev(statev_r) = 0.0_wp
+    end subroutine forget_elastic
+
+    !> One point of an interface whose host counts compression and penetration positive (Abaqus).
+    !>
+    !> Such a host knows the gap; the state variables follow it, so that an initial gap or
+    !> overclosure, and what the host corrects on its own, arrive here.
+    pure subroutine interface_update(position, increment, dtime, props, statev, stress, stiffness, &
+        status)
+        real(wp), intent(in) :: position(:)         !! at the end: penetration, tangential [L]
+        real(wp), intent(in) :: increment(:)        !! of the position [L]
+        real(wp), intent(in) :: dtime               !! [T]
+        real(wp), intent(in) :: props(:)            !! constants of the friction routine
+        real(wp), intent(inout) :: statev(:)        !! state of the friction routine
+        real(wp), intent(inout) :: stress(:)        !! pressure, tangential traction [F/L^2]
+        real(wp), intent(inout) :: stiffness(:, :)  !! d(stress)/d(position) [F/L^3]
+        integer, intent(out) :: status              !! of the friction routine
+        real(wp), parameter :: no_master = 1.0e30_wp   !! a gap as wide as this is to nothing
+        real(wp) :: du(size(increment)), u_n
+
+        u_n = -(position(1) - increment(1))
+        du = increment
+        du(1) = -increment(1)
+        if (-position(1) > no_master) then   ! open, whatever the increment says
+            u_n = no_master
+            du = 0.0_wp
+        else if (u_n > no_master) then       ! just found: take it as touching at the end
+            u_n = 0.0_wp
+            du = 0.0_wp
+            du(1) = -position(1)
+        end if
+        call place_point(u_n, props, statev, status)
+        if (status < 0) return
+        call friction_update(du, dtime, props, statev, stress, stiffness, status)
+        if (status < 0) return
+        stress(1) = -stress(1)
+        stiffness(2:, 1) = -stiffness(2:, 1)
+    end subroutine interface_update
+
+    !> Puts a point where it starts the increment.
+    pure subroutine place_point(u_n, props, statev, status)
+        real(wp), intent(in) :: u_n            !! normal displacement at the start, > 0 open [L]
+        real(wp), intent(in) :: props(:)       !! constants of the friction routine
+        real(wp), intent(inout) :: statev(:)   !! state at the start of the increment
+        integer, intent(out) :: status         !! of the friction routine
+        real(wp) :: traction(2), tangent(2, 2)
+
+        status = friction_ok
+        if (abs(statev(statev_status)) > 0.0_wp) then
+            statev(statev_u_n) = u_n
+        else
+            call friction_update([u_n, 0.0_wp], 0.0_wp, props, statev, traction, tangent, status)
+        end if
+    end subroutine place_point
+
+    !> Elastic energy per area held by the contact springs.
+    pure function elastic_energy(props, u_n, u_et) result(energy)
+        real(wp), intent(in) :: props(:)   !! constants of the friction routine
+        real(wp), intent(in) :: u_n  !! normal displacement; 0 where the host has its own spring [L]
+        real(wp), intent(in) :: u_et(:)    !! elastic tangential displacement [L]
+        real(wp) :: energy                 !! [F/L]
+
+        energy = 0.5_wp * (props(2) * min(u_n, 0.0_wp)**2 + props(3) * sum(u_et**2))
+    end function elastic_energy
+
+    !> The factor on the time increment that a status asks for: below 1 where the host should cut.
+    pure function cut_factor(status) result(factor)
+        integer, intent(in) :: status   !! of the friction routine
+        real(wp) :: factor
+
+        factor = 1.0_wp
+        if (status == friction_snap_back) factor = 0.5_wp
+        if (status == friction_no_convergence) factor = 0.25_wp
+    end function cut_factor
+
+    !> What to tell the user of a host about an error.
+    pure function error_text(adapter, status) result(text)
+        character(len=*), intent(in) :: adapter    !! name of the adapter
+        integer, intent(in) :: status              !! of the friction routine
+        character(len=error_length) :: text
+
+        write (text, '(3a, i0, 2a)') 'stickslip, ', adapter, ', code ', status, ': ', &
+            friction_message(status)
+    end function error_text
+
+end module friction_host

@@ -1,0 +1,45 @@
+!> Kratos UMAT: the constitutive law of the interface elements `UPwSmallStrainInterfaceElement2D4N`
+!> and `...3D8N`, loaded from libstickslip_kratos.so by `SmallStrainUMAT2DInterfaceLaw` and
+!> `...3DInterfaceLaw`:
+!>
+!>     "UDSM_NAME": "libstickslip_kratos.so", "IS_FORTRAN_UDSM": true,
+!>     "UMAT_PARAMETERS": [the constants of `friction_update`], "STATE_VARIABLES": [0, ... eight]
+!>
+!> These elements pass half the gap as strain and take twice the traction as stress. Normal in place
+!> 3, shear along x in 6, along y (in space) in 5. Many arguments are NULL and are not touched.
+subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
+    time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
+    coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
+    use, intrinsic :: iso_fortran_env, only : error_unit
+    use friction_host, only : error_text
+    use friction_kinds, only : wp
+    use friction_mod, only : friction_bad_size, friction_update, statev_size
+    implicit none
+    integer, intent(in) :: ndi, nshr, ntens           !! ntens 6
+    integer, intent(in) :: nstatv, nprops
+    real(wp), intent(inout) :: stress(ntens)          !! out: twice the traction [F/L^2]
+    real(wp), intent(inout) :: statev(nstatv)         !! state of the friction routine
+    real(wp), intent(inout) :: ddsdde(ntens, ntens)   !! d(stress)/d(dstran) [F/L^3]
+    real(wp), intent(in) :: dstran(ntens)             !! half the increment of the gap [L]
+    real(wp), intent(in) :: dtime, props(nprops)
+    ! not touched, and often NULL:
+    real(wp), intent(in) :: sse, spd, scd, rpl, ddsddt(*), drplde(*), drpldt, stran(*), time(*), &
+        temp, dtemp, predef(*), dpred(*), coords(*), drot(*), pnewdt, celent, dfgrd0(*), dfgrd1(*)
+    integer, intent(in) :: noel, npt, layer, kspt, jstep, kinc
+    character(len=1), intent(in) :: cmname
+    integer, parameter :: places(3) = [3, 6, 5]       ! normal, along x, along y
+    real(wp) :: traction(3), tangent(3, 3)
+    integer :: status
+
+    status = friction_bad_size
+    if (ntens == 6 .and. nstatv >= statev_size) call friction_update(2.0_wp * dstran(places), &
+        dtime, props, statev, traction, tangent, status)
+    if (status < 0) then   ! this host has no way to cut the step or to hear of an error
+        write (error_unit, '(a)') trim(error_text('Kratos UMAT', status))
+        error stop
+    end if
+    stress = 0.0_wp
+    stress(places) = 2.0_wp * traction
+    ddsdde = 0.0_wp
+    ddsdde(places, places) = 4.0_wp * tangent
+end subroutine umat
