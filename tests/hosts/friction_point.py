@@ -1,0 +1,32 @@
+"""`friction_update` of libstickslip.so for the tests of finite-element hosts.
+
+STICKSLIP_LIBRARY names the shared library.
+"""
+import ctypes
+import os
+
+Numbers = ctypes.POINTER(ctypes.c_double)
+
+
+class FrictionPoint:
+    """One contact point and its state."""
+
+    library = None
+
+    def __init__(self, props):
+        if FrictionPoint.library is None:
+            FrictionPoint.library = ctypes.CDLL(os.environ['STICKSLIP_LIBRARY'])
+            FrictionPoint.library.friction_update.argtypes = [
+                ctypes.c_int, Numbers, ctypes.c_double, ctypes.c_int, Numbers, ctypes.c_int, Numbers, Numbers, Numbers]
+        self.props = (ctypes.c_double * len(props))(*props)
+        self.statev = (ctypes.c_double * 8)()
+
+    def update(self, du, dt):
+        """Traction at the end of an increment: normal, then tangential."""
+        n = len(du)
+        traction, tangent = (ctypes.c_double * n)(), (ctypes.c_double * (n * n))()
+        status = self.library.friction_update(n, (ctypes.c_double * n)(*du), dt, len(self.props), self.props, 8,
+                                              self.statev, traction, tangent)
+        if status < 0:
+            raise RuntimeError(f'friction_update: code {status}')
+        return list(traction)

@@ -1,0 +1,79 @@
+"""Kratos with libstickslip_kratos.so: two blocks against the same path through `friction_update`.
+
+STICKSLIP_LIBRARY and STICKSLIP_KRATOS name the shared libraries.
+"""
+import importlib.util
+import os
+import pathlib
+import sys
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / 'examples/kratos')]
+
+import friction_point  # noqa: E402
+
+HAVE_KRATOS = importlib.util.find_spec('KratosMultiphysics') is not None
+PRESSED, DT = -0.004, 0.01
+
+
+def programme():
+    """Pressed in, sheared, reversed, held, sheared again, opened and closed again: x, y and normal."""
+    path = [(0.0, 0.0, PRESSED * k / 5) for k in range(1, 6)]
+    x = y = 0.0
+    for dx, dy, steps in ((4e-4, 1e-4, 20), (-4e-4, 2e-4, 25), (0.0, 0.0, 5), (4e-4, -3e-4, 20), (-1e-6, 0.0, 2)):
+        for _ in range(steps):
+            x, y = x + dx, y + dy
+            path.append((x, y, PRESSED))
+    path += [(x, y, 0.002), (x, y, 0.004)]
+    for _ in range(10):
+        x += 4e-4
+        path.append((x, y, PRESSED))
+    return path
+
+
+@unittest.skipUnless(HAVE_KRATOS, 'Kratos is not installed: ./dev hosts installs it')
+class Blocks(unittest.TestCase):
+    def run_blocks(self, dimension):
+        import two_blocks
+        blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], dimension, dt=DT)
+        normal = dimension - 1
+        points = [friction_point.FrictionPoint(two_blocks.FRICTION) for _ in blocks.layers[1]]
+        old = [[0.0] * dimension for _ in points]
+        area = 1.0 / len(points)
+        worst, worst_state, most, sticking, slipping = 0.0, 0.0, 0, 0, 0
+        for x, y, n in programme():
+            most = max(most, blocks.step((x, n) if dimension == 2 else (x, y, n)))
+            expected = [0.0] * dimension
+            for k, (point, gap) in enumerate(zip(points, blocks.gaps())):
+                du = [b - a for a, b in zip(old[k], gap)]
+                traction = point.update([du[normal], *du[:normal]], DT)
+                for i, value in enumerate([*traction[1:], traction[0]]):
+                    expected[i] += area * value
+                old[k] = gap
+            slipping += points[0].statev[0] == 2
+            sticking += points[0].statev[0] == 1
+            for found, wanted in zip(blocks.force(), expected):
+                worst = max(worst, abs(found - wanted) / abs(1e3 * PRESSED))
+            for place, found in enumerate(blocks.state()):
+                wanted = sum(point.statev[place] for point in points) / len(points)
+                scale = abs(PRESSED) if place in (1, 2, 3) else 1.0
+                worst_state = max(worst_state, abs(found - wanted) / scale)
+        print(f'\n  {dimension}D: {len(programme())} steps, worst difference {worst:.1e} of the pressing force, '
+              f'{worst_state:.1e} in the state, '
+              f'most Newton iterations {most}; slip in {slipping} steps, stick in {sticking}')
+        self.assertLess(worst, 1e-7)
+        self.assertLess(worst_state, 1e-7)
+        self.assertLessEqual(most, 4)
+        self.assertGreater(slipping, 40)
+        self.assertGreater(sticking, 5)
+
+    def test_two_dimensions(self):
+        self.run_blocks(2)
+
+    def test_three_dimensions(self):
+        self.run_blocks(3)
+
+
+if __name__ == '__main__':
+    unittest.main()

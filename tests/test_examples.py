@@ -1,0 +1,108 @@
+"""The examples build against an installed package, in an empty folder, and run.
+
+BUILD names the build directory; CMAKE, the cmake program; FC, the Fortran compiler of the build.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / 'hosts'))
+
+import friction_point  # noqa: E402
+
+FORTRAN = os.environ.get('FC', 'gfortran')
+EXAMPLES = pathlib.Path(__file__).resolve().parent.parent / 'examples'
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.prefix = cls.folder / 'installed here'   # a path with a space, as users have them
+        cls.call(os.environ['CMAKE'], '--install', os.environ['BUILD'], '--prefix', cls.prefix)
+        cls.libraries = next(cls.prefix.rglob('libstickslip.so')).parent
+        os.environ['STICKSLIP_LIBRARY'] = str(cls.libraries / 'libstickslip.so')
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def call(cls, *command, **options):
+        result = subprocess.run(list(map(str, command)), text=True, check=False, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, **options)
+        if result.returncode != 0:
+            raise AssertionError(f'{command}: {result.stdout}')
+        return result.stdout
+
+    def last_line(self, output):
+        """Of 20 slips forth and 20 back, the last: step, shear, mu, R; must be what the library says."""
+        point = friction_point.FrictionPoint([1, 1000, 800, 0.45, 0.25, 8, 0.2, 60])
+        for du in [(-0.002, 0.0)] + 20 * [(0.0, 0.0005)] + 20 * [(0.0, -0.0005)]:
+            shear = point.update(du, 0.01)[1]
+        words = output.splitlines()[-1].split()
+        self.assertEqual(words[0], '40')
+        self.assertAlmostEqual(float(words[1]), shear, delta=1e-9)
+        self.assertAlmostEqual(float(words[3]), point.statev[5], delta=1e-5)
+        return words
+
+    def build_with_cmake(self, language):
+        build = self.folder / f'build_{language}'
+        self.call(os.environ['CMAKE'], '-S', EXAMPLES / language, '-B', build,
+                  f'-DCMAKE_PREFIX_PATH={self.prefix}', env={**os.environ, 'FC': FORTRAN})
+        self.call(os.environ['CMAKE'], '--build', build)
+        return self.last_line(self.call(build / 'slide'))
+
+    def build_with_pkg_config(self, compiler, source):
+        if shutil.which('pkg-config') is None:
+            self.skipTest('pkg-config is not installed')
+        flags = self.call('pkg-config', '--cflags', '--libs', 'stickslip',
+                          env={**os.environ, 'PKG_CONFIG_PATH': str(self.libraries / 'pkgconfig')})
+        program = self.folder / f'slide_{source.suffix}'
+        self.call(f'{compiler} "{source}" {flags.strip()} -o "{program}"', shell=True)
+        return self.last_line(self.call(program, env={**os.environ, 'LD_LIBRARY_PATH': str(self.libraries)}))
+
+    def test_all_roads_lead_to_the_same_numbers(self):
+        lines = [self.build_with_cmake('c'), self.build_with_cmake('fortran')]
+        self.assertEqual(lines[0], lines[1])
+
+    def test_pkg_config_tells_c_and_fortran_how_to_link(self):
+        lines = [self.build_with_pkg_config('cc', EXAMPLES / 'c/slide.c'),
+                 self.build_with_pkg_config(FORTRAN, EXAMPLES / 'fortran/slide.f90')]
+        self.assertEqual(lines[0], lines[1])
+
+    def test_python_draws_its_hysteresis_loop(self):
+        try:
+            import matplotlib  # noqa: F401
+            import numpy  # noqa: F401
+        except ImportError:
+            self.skipTest('numpy and matplotlib are not installed: ./dev hosts installs them')
+        output = self.call(sys.executable, EXAMPLES / 'python/hysteresis.py', self.libraries / 'libstickslip.so',
+                           cwd=self.folder)
+        self.assertIn('picture: hysteresis.png', output)
+        self.assertTrue((self.folder / 'hysteresis.png').exists())
+
+    def test_everything_a_host_needs_is_installed(self):
+        for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'friction.h', 'friction_mod.mod',
+                     'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90', 'stickslip.pc'):
+            self.assertEqual(len(list(self.prefix.rglob(name))), 1, name)
+
+    def test_the_single_files_for_abaqus_compile_alone(self):
+        for name in ('standard', 'explicit'):
+            source = next(self.prefix.rglob(f'stickslip_abaqus_{name}.f90'))
+            alone = self.folder / name
+            alone.mkdir()
+            shutil.copy(source, alone)
+            kinds = [[]]
+            if 'gfortran' in FORTRAN:
+                kinds += [['-Wall', '-Wno-unused-dummy-argument'], ['-fdefault-integer-8']]
+            for options in kinds:
+                self.assertEqual(self.call(FORTRAN, '-c', *options, source.name, cwd=alone), '')
+
+
+if __name__ == '__main__':
+    unittest.main()

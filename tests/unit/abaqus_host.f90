@@ -1,0 +1,34 @@
+!> What Abaqus brings along for its user subroutines: here only its ear for errors.
+module abaqus_host
+    implicit none
+    private
+
+    integer, public :: errors_heard = 0                !! calls of the error utilities
+    character(len=500), public :: last_error = ''
+
+end module abaqus_host
+
+subroutine stdb_abqerr(lop, text, intv, realv, charv)
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abaqus_host, only : errors_heard, last_error
+    implicit none
+    integer, intent(in) :: lop, intv(*)
+    character(len=500), intent(in) :: text
+    real(dp), intent(in) :: realv(*)
+    character(len=8), intent(in) :: charv(*)
+
+    if (lop == -3) errors_heard = errors_heard + 1
+    last_error = text
+end subroutine stdb_abqerr
+
+subroutine xplb_abqerr(lop, text, intv, realv, charv)
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    implicit none
+    integer, intent(in) :: lop, intv(*)
+    character(len=500), intent(in) :: text
+    real(dp), intent(in) :: realv(*)
+    character(len=8), intent(in) :: charv(*)
+    external :: stdb_abqerr
+
+    call stdb_abqerr(lop, text, intv, realv, charv)
+end subroutine xplb_abqerr
