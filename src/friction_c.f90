@@ -4,7 +4,7 @@ module friction_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_loc, c_null_char, c_ptr
     use friction_mod, only : friction_bad_size, friction_null_pointer, friction_tangential, &
-        friction_update, friction_version
+        friction_version, update_arrays
     use friction_status, only : first_message, last_message, message_length, message_place, messages
     implicit none
     private
@@ -33,7 +33,8 @@ contains
         type(c_ptr), value, intent(in) :: traction     !! ndir numbers, out [F/L^2]
         type(c_ptr), value, intent(in) :: tangent  !! ndir x ndir numbers, column-major, out [F/L^3]
         integer(c_int) :: status
-        real(c_double), pointer :: du_(:), props_(:), statev_(:), traction_(:), tangent_(:, :)
+        real(c_double), pointer, contiguous :: du_(:), props_(:), statev_(:), traction_(:), &
+            tangent_(:, :)
 
         status = friction_bad_size
         if (min(ndir, nprops, nstatv) < 0) return
@@ -45,7 +46,8 @@ contains
         call c_f_pointer(statev, statev_, [nstatv])
         call c_f_pointer(traction, traction_, [ndir])
         call c_f_pointer(tangent, tangent_, [ndir, ndir])
-        call friction_update(du_, dtime, props_, statev_, traction_, tangent_, status)
+        call update_arrays(ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, tangent_, &
+            status)
     end function c_update
 
     !> `friction_tangential` of include/friction.h.

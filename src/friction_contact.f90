@@ -8,7 +8,7 @@ module friction_contact
     implicit none
     private
 
-    public :: contact_motion, contact_point, contact_response, contact_springs, contact_update
+    public :: contact_motion, contact_point, contact_springs, contact_update
 
     integer, parameter, public :: point_virgin = 0   !! nothing has happened yet
     integer, parameter, public :: point_stick = 1    !! closed, tangentially elastic
@@ -23,97 +23,107 @@ module friction_contact
 
     !> What happens in an increment. A host that controls the pressure itself hands it in.
     type :: contact_motion
-        real(wp) :: du(3) = 0.0_wp   !! relative displacement: normal, tangential 1 and 2 [L]
-        real(wp) :: dt = 0.0_wp                !! increment of time, >= 0 [T]
-        logical :: pressure_given = .false.    !! the pressure below replaces the normal spring
-        real(wp) :: pressure = 0.0_wp          !! at the end of the increment [F/L^2]
+        real(wp) :: du(3)           !! relative displacement: normal, tangential 1 and 2 [L]
+        real(wp) :: dt              !! increment of time, >= 0 [T]
+        real(wp) :: pressure        !! at the end of the increment, if given [F/L^2]
+        logical :: pressure_given   !! the pressure replaces the normal spring
     end type contact_motion
 
     !> State of a contact point.
     type :: contact_point
-        integer :: phase = point_virgin      !! one of the four above
-        real(wp) :: u_n = 0.0_wp   !! normal relative displacement, negative = penetration [L]
-        real(wp) :: u_et(2) = 0.0_wp         !! elastic tangential displacement [L]
-        type(law_state) :: inner             !! internal variables of the law
-        real(wp) :: slip = 0.0_wp            !! accumulated slip [L]
-        real(wp) :: dissipation = 0.0_wp     !! accumulated dissipated energy per area [F/L]
+        integer :: phase            !! one of the four above
+        real(wp) :: u_n             !! normal relative displacement, negative = penetration [L]
+        real(wp) :: u_et(2)         !! elastic tangential displacement [L]
+        type(law_state) :: inner    !! internal variables of the law
+        real(wp) :: slip            !! accumulated slip [L]
+        real(wp) :: dissipation     !! accumulated dissipated energy per area [F/L]
     end type contact_point
-
-    type :: contact_response
-        real(wp) :: traction(3)  !! transmitted: normal (negative = compression), tangential [F/L^2]
-        real(wp) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is given, column 1 is
-                                    !! d/d(pressure)
-    end type contact_response
 
 contains
 
-    !> Traction, consistent tangent and new state of a contact point.
-    pure subroutine contact_update(surface, springs, motion, old, new, response, status)
+    !> Traction, consistent tangent and new state of a contact point. Only on a status >= 0 do they
+    !> mean anything, and only then are traction and tangent written.
+    pure subroutine contact_update(surface, springs, motion, old, new, traction, tangent, status)
         class(law), intent(in) :: surface
         type(contact_springs), intent(in) :: springs
         type(contact_motion), intent(in) :: motion
-        type(contact_point), intent(in) :: old         !! state at the start of the increment
-        type(contact_point), intent(out) :: new        !! state at its end
-        type(contact_response), intent(out) :: response
-        integer, intent(out) :: status                 !! ok, snap back, or no convergence
-        real(wp) :: pressure, loaded, d_loaded, q(2)
+        type(contact_point), intent(in) :: old       !! state at the start of the increment
+        type(contact_point), intent(out) :: new      !! state at its end
+        real(wp), intent(inout) :: traction(3)   !! transmitted: normal (negative = compression),
+                                                 !! tangential [F/L^2]
+        real(wp), intent(inout) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is
+                                                   !! given, column 1 is d/d(pressure)
+        integer, intent(out) :: status               !! ok, snap back, or no convergence
+        real(wp) :: pressure, loaded, q(2), tau(2), by_q(2, 2), by_pressure(2)
+        logical :: closes
 
-        new = old
-        status = friction_ok
+        new%u_n = old%u_n + motion%du(1)
+        pressure = -springs%normal * new%u_n
         if (motion%pressure_given) then
             pressure = motion%pressure
             new%u_n = -pressure / springs%normal
-        else
-            new%u_n = old%u_n + motion%du(1)
-            pressure = -springs%normal * new%u_n
         end if
+        status = friction_ok
         if (.not. pressure > 0.0_wp) then
-            call open_contact(surface, motion%dt, old, new, response)
+            call open_contact(surface, motion%dt, old, new)
+            traction = 0.0_wp
+            tangent = 0.0_wp
             return
         end if
 
         ! Only the part of the increment after touchdown loads the contact.
+        closes = old%u_n > 0.0_wp .and. .not. motion%pressure_given
         loaded = 1.0_wp
-        d_loaded = 0.0_wp
-        if (old%u_n > 0.0_wp .and. .not. motion%pressure_given) then
-            loaded = new%u_n / motion%du(1)
-            d_loaded = -old%u_n / motion%du(1)**2
-        end if
-        q = old%u_et + loaded * motion%du(2:3)
+        if (closes) loaded = new%u_n / motion%du(1)
+        q(1) = old%u_et(1) + loaded * motion%du(2)
+        q(2) = old%u_et(2) + loaded * motion%du(3)
 
-        call tangential_update(surface, springs%tangential, q, pressure, motion%dt, old, new, &
-            response, status)
-        response%traction(1) = -pressure
-        response%tangent(1, 1:3) = 0.0_wp
+        call tangential_update(surface, springs%tangential, q, pressure, motion%dt, old, new, tau, &
+            by_q, by_pressure, status)
+        if (status < 0) return
+        traction(1) = -pressure
+        traction(2) = tau(1)
+        traction(3) = tau(2)
+        tangent(1, 1) = springs%normal
+        tangent(1, 2) = 0.0_wp
+        tangent(1, 3) = 0.0_wp
         if (motion%pressure_given) then
-            response%tangent(1, 1) = -1.0_wp
+            tangent(1, 1) = -1.0_wp
         else
-            response%tangent(1, 1) = springs%normal
-            response%tangent(2:3, 1) = -springs%normal * response%tangent(2:3, 1) &
-                + d_loaded * matmul(response%tangent(2:3, 2:3), motion%du(2:3))
-            response%tangent(2:3, 2:3) = loaded * response%tangent(2:3, 2:3)
+            by_pressure = -springs%normal * by_pressure
+            if (closes) then
+                by_pressure = by_pressure - old%u_n / motion%du(1)**2 &
+                    * matmul(by_q, motion%du(2:3))
+                by_q = loaded * by_q
+            end if
         end if
+        tangent(2, 1) = by_pressure(1)
+        tangent(3, 1) = by_pressure(2)
+        tangent(2, 2) = by_q(1, 1)
+        tangent(3, 2) = by_q(2, 1)
+        tangent(2, 3) = by_q(1, 2)
+        tangent(3, 3) = by_q(2, 2)
     end subroutine contact_update
 
     !> No pressure: nothing is carried, the surfaces forget their elastic displacement and heal.
-    pure subroutine open_contact(surface, dt, old, new, response)
+    pure subroutine open_contact(surface, dt, old, new)
         class(law), intent(in) :: surface
         real(wp), intent(in) :: dt                  !! increment of time [T]
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
-        type(contact_response), intent(out) :: response
         real(wp) :: strength
 
         new%phase = point_open
         new%u_et = 0.0_wp
         call surface%rest(0.0_wp, 0.0_wp, dt, old%inner, new%inner, strength)
-        response%traction = 0.0_wp
-        response%tangent = 0.0_wp
+        new%slip = old%slip
+        new%dissipation = old%dissipation
     end subroutine open_contact
 
-    !> Stick or slip under pressure: tangential traction, its derivatives by `q` (columns 2, 3) and
-    !> by the pressure (column 1).
-    pure subroutine tangential_update(surface, alpha_t, q, pressure, dt, old, new, response, status)
+    !> Stick or slip under pressure: the tangential traction, its derivatives by `q` and by the
+    !> pressure.
+    pure subroutine tangential_update(surface, alpha_t, q, pressure, dt, old, new, tau, by_q, &
+        by_pressure, status)
         class(law), intent(in) :: surface
         real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         real(wp), intent(in) :: q(2)          !! trial elastic tangential displacement [L]
@@ -121,42 +131,57 @@ contains
         real(wp), intent(in) :: dt            !! increment of time [T]
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
-        type(contact_response), intent(inout) :: response
+        real(wp), intent(out) :: tau(2)             !! tangential traction [F/L^2]
+        real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
+        real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
         integer, intent(out) :: status
         type(sliding) :: slid
-        real(wp) :: distance, strength, t(2), along, across, stiffness
+        real(wp) :: distance, strength, inverse, share, t1, t2, coupling, along, across
 
         status = friction_ok
         distance = sqrt(q(1)**2 + q(2)**2)
         call surface%rest(alpha_t * distance, pressure, dt, old%inner, new%inner, strength)
         if (alpha_t * distance <= strength) then
             new%phase = point_stick
-            new%u_et = q
-            response%traction(2:3) = alpha_t * q
-            response%tangent(2:3, 1) = 0.0_wp
-            response%tangent(2:3, 2) = [alpha_t, 0.0_wp]
-            response%tangent(2:3, 3) = [0.0_wp, alpha_t]
+            new%u_et(1) = q(1)
+            new%u_et(2) = q(2)
+            new%slip = old%slip
+            new%dissipation = old%dissipation
+            tau(1) = alpha_t * q(1)
+            tau(2) = alpha_t * q(2)
+            by_q(1, 1) = alpha_t
+            by_q(2, 1) = 0.0_wp
+            by_q(1, 2) = 0.0_wp
+            by_q(2, 2) = alpha_t
+            by_pressure = 0.0_wp
             return
         end if
 
         call return_map(surface, alpha_t * distance, alpha_t, pressure, dt, old%inner, slid, status)
-        t = q / distance
+        if (status < 0) return
+        inverse = 1.0_wp / distance
+        across = slid%resistance * inverse
+        share = across / alpha_t
+        t1 = q(1) * inverse
+        t2 = q(2) * inverse
+        tau(1) = across * q(1)
+        tau(2) = across * q(2)
         new%phase = point_slip
         new%inner = slid%state
-        new%u_et = slid%resistance / alpha_t * t
+        new%u_et(1) = share * q(1)
+        new%u_et(2) = share * q(2)
         new%slip = old%slip + slid%slip
         new%dissipation = old%dissipation + slid%resistance * slid%slip
 
-        ! d(tau)/d(trial): `along` the sliding direction, `across` it by its rotation alone.
-        stiffness = max(alpha_t + slid%d_slip, epsilon(alpha_t) * alpha_t)
-        along = alpha_t * slid%d_slip / stiffness
-        across = slid%resistance / distance
-        response%traction(2:3) = slid%resistance * t
-        response%tangent(2:3, 1) = alpha_t / stiffness * slid%d_pressure * t
-        response%tangent(2, 2) = along * t(1)**2 + across * t(2)**2
-        response%tangent(3, 3) = along * t(2)**2 + across * t(1)**2
-        response%tangent(3, 2) = (along - across) * t(1) * t(2)
-        response%tangent(2, 3) = response%tangent(3, 2)
+        ! `along` the sliding direction the slip yields to the trial, `across` it turns alone.
+        coupling = alpha_t / max(alpha_t + slid%d_slip, epsilon(alpha_t) * alpha_t)
+        along = coupling * slid%d_slip
+        by_pressure(1) = coupling * slid%d_pressure * t1
+        by_pressure(2) = coupling * slid%d_pressure * t2
+        by_q(1, 1) = along * t1**2 + across * t2**2
+        by_q(2, 1) = (along - across) * t1 * t2
+        by_q(1, 2) = by_q(2, 1)
+        by_q(2, 2) = along * t2**2 + across * t1**2
     end subroutine tangential_update
 
 end module friction_contact

@@ -14,18 +14,17 @@ module friction_law
 
     !> Internal variables of a law at one contact point.
     type :: law_state
-        real(wp) :: mu = 0.0_wp   !! friction coefficient [-]
-        real(wp) :: r = 0.0_wp   !! internal variable; here the similarity ratio of the subloading
-                                 !! surface [-]
+        real(wp) :: mu   !! friction coefficient [-]
+        real(wp) :: r    !! the law's internal variable, e.g. the similarity ratio R [-]
     end type law_state
 
     !> A surface that has slid: the result of the return mapping.
     type :: sliding
-        real(wp) :: slip = 0.0_wp         !! slip in this increment, >= 0 [L]
+        real(wp) :: slip         !! slip in this increment, >= 0 [L]
         type(law_state) :: state          !! internal variables at the end of the increment
-        real(wp) :: resistance = 0.0_wp   !! tangential traction [F/L^2]
-        real(wp) :: d_slip = 0.0_wp       !! d(resistance)/d(slip) [F/L^3]
-        real(wp) :: d_pressure = 0.0_wp   !! d(resistance)/d(pressure) [-]
+        real(wp) :: resistance   !! tangential traction [F/L^2]
+        real(wp) :: d_slip       !! d(resistance)/d(slip) [F/L^3]
+        real(wp) :: d_pressure   !! d(resistance)/d(pressure) [-]
     end type sliding
 
     type, abstract :: law

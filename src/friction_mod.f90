@@ -5,10 +5,11 @@
 !> variables. Every procedure here is pure: no saved data, no input or output, no allocation. On a
 !> negative `status` nothing else is touched.
 module friction_mod
-    use friction_contact, only : contact_motion, contact_point, contact_response, contact_springs, &
-        contact_update, point_open, point_slip, point_stick, point_virgin
-    use friction_kinds, only : all_usable, wp
-    use friction_law, only : law, law_state
+    use, intrinsic :: iso_fortran_env, only : int64
+    use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
+        point_open, point_slip, point_stick, point_virgin
+    use friction_kinds, only : wp
+    use friction_law, only : law
     use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
         friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back
@@ -16,8 +17,8 @@ module friction_mod
     implicit none
     private
 
-    public :: friction_update, friction_update_frame, friction_tangential, friction_message, &
-        friction_version
+    public :: friction_update, update_arrays, friction_update_frame, friction_tangential, &
+        friction_message, friction_version
     public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
         friction_null_pointer, friction_ok, friction_snap_back
@@ -45,35 +46,56 @@ contains
 
     !> Friction update of a contact point in its own axes (docs/theory.md, sections 3 and 4).
     pure subroutine friction_update(du, dtime, props, statev, traction, tangent, status)
-        real(wp), intent(in) :: du(:)   !! increment of relative displacement: normal, tangential
-                                        !! 1[, 2];
-                                                  !! size 2 or 3, finite [L]
-        real(wp), intent(in) :: dtime             !! increment of time, >= 0 [T]
-        real(wp), intent(in) :: props(:)   !! material constants: number of the law, alpha_n,
-                                           !! alpha_t, its own
-        real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
-                                               !! zero = virgin
-        real(wp), intent(inout) :: traction(:)  !! T at the end of the increment; size of du [F/L^2]
-        real(wp), intent(inout) :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of du squared
-                                                   !! [F/L^3]
-        integer, intent(out) :: status            !! a named code; `friction_message` gives its text
-        type(contact_motion) :: motion
-        type(contact_response) :: response
+        real(wp), intent(in), contiguous :: du(:)   !! increment of relative displacement: normal,
+                                                    !! tangential 1[, 2]; size 2 or 3, finite [L]
+        real(wp), intent(in) :: dtime               !! increment of time, >= 0 [T]
+        real(wp), intent(in), contiguous :: props(:)   !! material constants: number of the law,
+                                                       !! alpha_n, alpha_t, its own
+        real(wp), intent(inout), contiguous :: statev(:)   !! state, start in, end out; size 8 or
+                                                           !! more; all zero = virgin
+        real(wp), intent(inout), contiguous :: traction(:)   !! T at the end of the increment; size
+                                                             !! of du [F/L^2]
+        real(wp), intent(inout), contiguous :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of
+                                                               !! du squared [F/L^3]
+        integer, intent(out) :: status   !! a named code; `friction_message` gives its text
         integer :: n
 
         n = size(du)
-        if (n < 2 .or. n > 3 .or. size(traction) /= n .or. size(tangent, 1) /= n &
-            .or. size(tangent, 2) /= n) then
-            status = friction_bad_size
-            return
-        end if
-        motion%du(1:n) = du
-        motion%dt = dtime
-        call advance(motion, n - 1, props, statev, response, status)
-        if (status < 0) return
-        traction = response%traction(1:n)
-        tangent = response%tangent(1:n, 1:n)
+        status = friction_bad_size
+        if (size(traction) /= n .or. size(tangent, 1) /= n .or. size(tangent, 2) /= n) return
+        call update_arrays(n, du, dtime, size(props), props, size(statev), statev, traction, &
+            tangent, status)
     end subroutine friction_update
+
+    !> `friction_update` with explicit sizes, as the C interface and Fortran 77 hand them over.
+    pure subroutine update_arrays(n, du, dtime, nprops, props, nstatv, statev, traction, tangent, &
+        status)
+        integer, intent(in) :: n, nprops, nstatv          !! sizes
+        real(wp), intent(in) :: du(n), dtime, props(nprops)
+        real(wp), intent(inout) :: statev(nstatv), traction(n), tangent(n, n)
+        integer, intent(out) :: status
+        type(contact_motion) :: motion
+        real(wp) :: plane_traction(3), plane_tangent(3, 3)
+
+        status = friction_bad_size
+        if (n < 2 .or. n > 3) return
+        motion%du(1) = du(1)
+        motion%du(2) = du(2)
+        motion%dt = dtime
+        motion%pressure_given = .false.
+        motion%pressure = 0.0_wp
+        if (n == 3) then
+            motion%du(3) = du(3)
+            call advance(motion, 2, nprops, props, nstatv, statev, traction, tangent, status)
+        else
+            motion%du(3) = 0.0_wp
+            call advance(motion, 1, nprops, props, nstatv, statev, plane_traction, plane_tangent, &
+                status)
+            if (status < 0) return
+            traction = plane_traction(1:2)
+            tangent = plane_tangent(1:2, 1:2)
+        end if
+    end subroutine update_arrays
 
     !> The same in any orthonormal frame, given the unit normal (the paper's `I - n n` form).
     !>
@@ -98,7 +120,7 @@ contains
                                                             !! passes
         real(wp) :: axes(3, 3), state(statev_size)
         type(contact_motion) :: motion
-        type(contact_response) :: response
+        real(wp) :: contact_traction(3), contact_tangent(3, 3)
         integer :: n
 
         n = size(du)
@@ -109,26 +131,30 @@ contains
             return
         end if
         status = friction_bad_normal
-        if (.not. all_usable(normal)) return
+        if (.not. all_usable(n, normal)) return
         if (abs(dot_product(normal, normal) - 1.0_wp) > unit_tolerance) return
         status = friction_bad_increment
-        if (.not. all_usable(du)) return
+        if (.not. all_usable(n, du)) return
         status = friction_bad_state
-        if (.not. all_usable(statev(1:statev_size))) return
+        if (.not. all_usable(statev_size, statev)) return
 
         axes = contact_axes(normal)
+        motion%du(3) = 0.0_wp
         motion%du(1:n) = matmul(du, axes(1:n, 1:n))
         motion%dt = dtime
+        motion%pressure_given = .false.
+        motion%pressure = 0.0_wp
         state = statev(1:statev_size)
         state(statev_u_n:statev_u_n + n - 1) = matmul(state(statev_u_n:statev_u_n + n - 1), &
             axes(1:n, 1:n))
-        call advance(motion, n - 1, props, state, response, status)
+        call advance(motion, n - 1, size(props), props, statev_size, state, contact_traction, &
+            contact_tangent, status)
         if (status < 0) return
         state(statev_u_n:statev_u_n + n - 1) = matmul(axes(1:n, 1:n), &
             state(statev_u_n:statev_u_n + n - 1))
         statev(1:statev_size) = state
-        traction = matmul(axes(1:n, 1:n), response%traction(1:n))
-        tangent = matmul(axes(1:n, 1:n), matmul(response%tangent(1:n, 1:n), &
+        traction = matmul(axes(1:n, 1:n), contact_traction(1:n))
+        tangent = matmul(axes(1:n, 1:n), matmul(contact_tangent(1:n, 1:n), &
             transpose(axes(1:n, 1:n))))
     end subroutine friction_update_frame
 
@@ -152,7 +178,7 @@ contains
         real(wp), intent(inout) :: dtau_dp(:)      !! d(tau)/d(pressure); size of du [-]
         integer, intent(out) :: status   !! a named code; `friction_message` gives its text
         type(contact_motion) :: motion
-        type(contact_response) :: response
+        real(wp) :: contact_traction(3), contact_tangent(3, 3)
         integer :: n
 
         n = size(du)
@@ -161,93 +187,142 @@ contains
             status = friction_bad_size
             return
         end if
+        motion%du = 0.0_wp
         motion%du(2:n + 1) = du
         motion%dt = dtime
         motion%pressure_given = .true.
         motion%pressure = pressure
-        call advance(motion, n, props, statev, response, status)
+        call advance(motion, n, size(props), props, size(statev), statev, contact_traction, &
+            contact_tangent, status)
         if (status < 0) return
-        tau = response%traction(2:n + 1)
-        dtau_ddu = response%tangent(2:n + 1, 2:n + 1)
-        dtau_dp = response%tangent(2:n + 1, 1)
+        tau = contact_traction(2:n + 1)
+        dtau_ddu = contact_tangent(2:n + 1, 2:n + 1)
+        dtau_dp = contact_tangent(2:n + 1, 1)
     end subroutine friction_tangential
 
     !> Validates, chooses the law, updates, and writes the state back.
-    pure subroutine advance(motion, n_tangential, props, statev, response, status)
+    pure subroutine advance(motion, n_tangential, nprops, props, nstatv, statev, traction, &
+        tangent, status)
         type(contact_motion), intent(in) :: motion
-        integer, intent(in) :: n_tangential       !! 1 or 2 tangential components
-        real(wp), intent(in) :: props(:)
-        real(wp), intent(inout) :: statev(:)
-        type(contact_response), intent(out) :: response
+        integer, intent(in) :: n_tangential             !! 1 or 2 tangential components
+        integer, intent(in) :: nprops, nstatv           !! sizes
+        real(wp), intent(in) :: props(nprops)
+        real(wp), intent(inout) :: statev(nstatv)
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)
         integer, intent(out) :: status
         type(subloading_law) :: subloading
+        integer(int64) :: seen
 
         status = friction_bad_size
-        if (size(props) < first_own_prop .or. size(statev) < statev_size) return
+        if (nprops < first_own_prop .or. nstatv < statev_size) return
         status = friction_bad_increment
-        if (.not. (all_usable(motion%du) .and. all_usable([motion%dt, motion%pressure]))) return
+        ! One by one: the caller has only just stored them one by one, and a processor that loads
+        ! them in pairs has to wait.
+        seen = ior(ior(ior(oversize(motion%du(1)), oversize(motion%du(2))), &
+            ior(oversize(motion%du(3)), oversize(motion%dt))), oversize(motion%pressure))
+        if (btest(seen, 62)) return
         if (motion%dt < 0.0_wp) return
         status = friction_bad_property
-        if (.not. all_usable(props)) return
+        if (.not. all_usable(nprops, props)) return
         if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
 
-        select case (law_number(props(prop_law)))
+        select case (whole_number(props(prop_law)))
         case (law_subloading)
-            call read_subloading_law(props(first_own_prop:), subloading, status)
+            call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                subloading, status)
             if (status < 0) return
-            call update_point(subloading, props, motion, n_tangential, statev, response, status)
+            call update_point(subloading, props, motion, n_tangential, statev, traction, tangent, &
+                status)
         case default
             status = friction_bad_law
         end select
     end subroutine advance
 
     !> One point under a law: unpacks `statev`, updates, and packs it again.
-    pure subroutine update_point(surface, props, motion, n_tangential, statev, response, status)
+    pure subroutine update_point(surface, props, motion, n_tangential, statev, traction, tangent, &
+        status)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: props(:)
+        real(wp), intent(in) :: props(prop_alpha_t)
         type(contact_motion), intent(in) :: motion
         integer, intent(in) :: n_tangential   !! 1 or 2 tangential components
-        real(wp), intent(inout) :: statev(:)
-        type(contact_response), intent(out) :: response
+        real(wp), intent(inout) :: statev(statev_size)
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)
         integer, intent(out) :: status
-        type(contact_springs) :: springs
         type(contact_point) :: old, new
 
         status = friction_bad_state
-        if (.not. all_usable(statev(1:statev_size))) return
-        old%phase = nint(min(max(statev(statev_status), -1.0_wp), 4.0_wp))
-        if (abs(statev(statev_status) - old%phase) > 0.0_wp) return
+        if (.not. all_usable(statev_size, statev)) return
+        old%phase = whole_number(statev(statev_status))
+        old%u_n = statev(statev_u_n)
+        old%u_et(1) = statev(statev_u_et)
+        old%u_et(2) = 0.0_wp
+        if (n_tangential > 1) old%u_et(2) = statev(statev_u_et + 1)
+        old%inner%mu = statev(statev_mu)
+        old%inner%r = statev(statev_r)
+        old%slip = statev(statev_slip)
+        old%dissipation = statev(statev_dissipation)
         select case (old%phase)
         case (point_virgin)
-            if (any(abs(statev(1:statev_size)) > 0.0_wp)) return
+            if (any(abs(statev) > 0.0_wp)) return
             old%inner = surface%virgin()
         case (point_stick, point_slip, point_open)
-            old%u_n = statev(statev_u_n)
-            old%u_et(1:n_tangential) = statev(statev_u_et:statev_u_et + n_tangential - 1)
-            old%inner = law_state(mu=statev(statev_mu), r=statev(statev_r))
-            old%slip = statev(statev_slip)
-            old%dissipation = statev(statev_dissipation)
-            if (old%slip < 0.0_wp .or. old%dissipation < 0.0_wp &
-                .or. .not. surface%admits(old%inner)) return
+            if (old%slip < 0.0_wp .or. old%dissipation < 0.0_wp) return
+            if (.not. surface%admits(old%inner)) return
         case default
             return
         end select
 
-        springs = contact_springs(normal=props(prop_alpha_n), tangential=props(prop_alpha_t))
-        call contact_update(surface, springs, motion, old, new, response, status)
+        call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
+            tangential=props(prop_alpha_t)), motion, old, new, traction, tangent, status)
         if (status < 0) return
-        statev(1:statev_size) = [real(new%phase, wp), new%u_n, new%u_et, new%inner%mu, &
-            new%inner%r, new%slip, new%dissipation]
+        statev(statev_status) = new%phase
+        statev(statev_u_n) = new%u_n
+        statev(statev_u_et) = new%u_et(1)
+        statev(statev_u_et + 1) = new%u_et(2)
+        statev(statev_mu) = new%inner%mu
+        statev(statev_r) = new%inner%r
+        statev(statev_slip) = new%slip
+        statev(statev_dissipation) = new%dissipation
     end subroutine update_point
 
-    !> The law's number; 0, which is no law, for anything but a small whole number.
-    pure function law_number(prop) result(number)
-        real(wp), intent(in) :: prop
+    !> Is every number finite and below 2**333 (1.7e100) in magnitude, so that products of three
+    !> cannot overflow?
+    pure function all_usable(n, x) result(usable)
+        integer, intent(in) :: n        !! how many numbers
+        real(wp), intent(in) :: x(n)
+        logical :: usable
+        integer(int64) :: seen
+        integer :: i
+
+        seen = 0
+        do i = 1, n
+            seen = ior(seen, oversize(x(i)))
+        end do
+        usable = .not. btest(seen, 62)
+    end function all_usable
+
+    !> A bit pattern whose bit 62 tells a number too large, infinite or NaN.
+    !>
+    !> Reads the exponent as an integer: silent where NaN raises a floating-point exception, and
+    !> right even where the compiler was told that there are no NaNs. An exponent that is too large
+    !> carries into that bit, and nothing else does.
+    pure function oversize(x) result(bits)
+        real(wp), intent(in) :: x
+        integer(int64) :: bits
+        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 51)
+        integer(int64), parameter :: carry = shiftl(2048_int64 - (1023 + 333), 51)
+
+        bits = iand(shiftr(transfer(x, bits), 1), exponent_bits) + carry
+    end function oversize
+
+    !> A number that counts something; -1, which counts nothing, for all but a small whole number.
+    pure function whole_number(x) result(number)
+        real(wp), intent(in) :: x
         integer :: number
 
-        number = nint(min(max(prop, 0.0_wp), 1000.0_wp))
-        if (abs(prop - number) > 0.0_wp) number = 0
-    end function law_number
+        number = int(min(max(x, -1.0_wp), 1000.0_wp))
+        if (abs(x - number) > 0.0_wp) number = -1
+    end function whole_number
 
     !> Orthonormal axes that start with the normal, as columns; tangential ones are as good as any.
     !> Without a division by a small number for every normal (Duff et al., J. Comput. Graph. Tech.

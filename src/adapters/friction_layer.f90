@@ -1,8 +1,9 @@
 !> The contact as a thin layer of elements: gap = thickness * strain, traction = stress. What the
 !> UMATs of Abaqus and CalculiX share.
 module friction_layer
+    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use friction_host, only : elastic_energy
-    use friction_kinds, only : all_usable, wp
+    use friction_kinds, only : wp
     use friction_mod, only : friction_bad_property, friction_bad_size, friction_update, &
         statev_dissipation, statev_size, statev_u_et, statev_u_n
     implicit none
@@ -44,7 +45,7 @@ contains
         n = at%n
         if (n == 0 .or. size(props) < 3 .or. size(statev) < statev_size) return
         status = friction_bad_property
-        if (.not. all_usable(props(1:2))) return
+        if (.not. all(ieee_is_finite(props(1:2)))) return
         thickness = props(1)
         modulus = props(2)
         if (thickness <= 0.0_wp .or. modulus < 0.0_wp) return

@@ -1,7 +1,8 @@
 !> Time-dependent elastoplastic friction with a subloading surface (docs/theory.md, section 1):
 !>
-!>     resistance = R mu p,   mu_dot = -kappa (mu - mu_k) |v_p| + xi (mu_s - mu),   R_dot = -m ln(R)
-!> |v_p|
+!>     resistance = R mu p
+!>     mu_dot = -kappa (mu - mu_k) |v_p| + xi (mu_s - mu)
+!>     R_dot = -m ln(R) |v_p|
 !>
 !> integrated by backward Euler over an increment with the slip s (section 3):
 !>
@@ -20,12 +21,12 @@ module friction_subloading_law
     public :: subloading_law, read_subloading_law
 
     type, extends(law) :: subloading_law
-        real(wp) :: mu_s = 0.0_wp    !! static friction coefficient, >= mu_k [-]
-        real(wp) :: mu_k = 0.0_wp    !! kinetic friction coefficient, >= 0 [-]
-        real(wp) :: kappa = 0.0_wp   !! adhesion-breaking exponent, >= 0 [1/L]
-        real(wp) :: xi = 0.0_wp      !! adhesion-forming exponent, >= 0 [1/T]
-        real(wp) :: m = 0.0_wp       !! rate at which R approaches 1, > 0 [1/L]
-        real(wp) :: mu_0 = 0.0_wp    !! friction coefficient of a virgin point, mu_k to mu_s [-]
+        real(wp) :: mu_s    !! static friction coefficient, >= mu_k [-]
+        real(wp) :: mu_k    !! kinetic friction coefficient, >= 0 [-]
+        real(wp) :: kappa   !! adhesion-breaking exponent, >= 0 [1/L]
+        real(wp) :: xi      !! adhesion-forming exponent, >= 0 [1/T]
+        real(wp) :: m       !! rate at which R approaches 1, > 0 [1/L]
+        real(wp) :: mu_0    !! friction coefficient of a virgin point, mu_k to mu_s [-]
     contains
         procedure :: virgin
         procedure :: admits
@@ -35,26 +36,28 @@ module friction_subloading_law
         procedure :: solve
     end type subloading_law
 
-    !> Newton's next error is the square of a step this small: round-off.
-    real(wp), parameter :: small_step = 1.0e-8_wp
+    !> The next error of a third-order iteration is the cube of a step this small, that of Newton's
+    !> method its square: round-off either way.
+    real(wp), parameter :: small_step = 1.0e-5_wp, small_newton_step = 1.0e-8_wp
 
 contains
 
     !> The law from its constants `mu_s, mu_k, kappa, xi, m[, mu_0]`.
-    pure subroutine read_subloading_law(constants, surface, status)
-        real(wp), intent(in) :: constants(:)          !! size 5 or more, finite
+    pure subroutine read_subloading_law(n, constants, surface, status)
+        integer, intent(in) :: n                      !! number of constants, 5 or more
+        real(wp), intent(in) :: constants(n)          !! finite
         type(subloading_law), intent(out) :: surface  !! the law, if the status is ok
         integer, intent(out) :: status                !! ok, bad size, or bad property
 
         status = friction_bad_size
-        if (size(constants) < 5) return
+        if (n < 5) return
         surface%mu_s = constants(1)
         surface%mu_k = constants(2)
         surface%kappa = constants(3)
         surface%xi = constants(4)
         surface%m = constants(5)
         surface%mu_0 = surface%mu_s
-        if (size(constants) > 5) surface%mu_0 = constants(6)
+        if (n > 5) surface%mu_0 = constants(6)
         status = friction_bad_property
         if (surface%mu_k < 0.0_wp .or. surface%mu_s < surface%mu_k) return
         if (surface%mu_0 < surface%mu_k .or. surface%mu_0 > surface%mu_s) return
@@ -130,8 +133,8 @@ contains
             * ratio_rate(self%m, to, r, log_r))
     end function weakening
 
-    !> Newton's method on the pair (s, R), one logarithm an iteration, from the root of the
-    !> quadratic that `-ln R ~ 1 - R`, `mu ~ mu(0)` gives (docs/theory.md, section 3).
+    !> The pair (s, R) by Chebyshev's method, Newton's third-order kin: one logarithm an iteration,
+    !> one or two iterations as a rule after either of two starts (docs/theory.md, section 3).
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
         class(subloading_law), intent(in) :: self
         real(wp), intent(in) :: trial, stiffness, pressure, dt
@@ -139,90 +142,130 @@ contains
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 12
-        real(wp) :: c, w0, iw, mu, mu_rate, s, r, e, log_r, gain, misfit, r_rate, d, ds, de
+        real(wp), parameter :: third = 1.0_wp / 3.0_wp
+        real(wp) :: c, w0, full, excess, s, r, e, iw, mu, mu_rate, log_r, r_rate, ms, gain, slack, &
+            misfit, d, ds, dr, bend_s, bend_r
         integer :: iteration
+        logical :: near
 
         solved = .false.
         c = weakening_reserve(self, dt, old)
         w0 = 1.0_wp + self%xi * dt
-        if (stiffness <= pressure * self%kappa * c / w0**2) return   ! several equilibria are
-                                                                     ! possible
+        if (stiffness * w0**2 <= pressure * self%kappa * c) return   ! several equilibria possible
 
-        call start(old%r, friction_coefficient(self, w0, c) * pressure, trial, stiffness, self%m, &
-            s, r, e)
+        iw = 1.0_wp / w0
+        full = (self%mu_k + c * iw) * pressure
+        excess = trial - old%r * full
+        call start_near(self, c, iw, excess, stiffness, pressure, old%r, s, r, e, near)
+        if (.not. near) call start_far(self, excess, full, stiffness, old%r, s, r, e)
         if (.not. r > 0.0_wp) return
-        log_r = rough_log(e)
-        do iteration = 0, max_iterations
-            if (iteration > 0) log_r = log_of_ratio(r, e)
+
+        do iteration = 1, max_iterations
             iw = 1.0_wp / (w0 + self%kappa * s)
             mu = self%mu_k + c * iw
             mu_rate = -self%kappa * c * iw**2
-            gain = r / (r + self%m * s)
-            misfit = gain * (ratio_gained(old%r, r, e) + self%m * s * log_r)
-            r_rate = -gain * self%m * log_r
-            d = stiffness + pressure * (r * mu_rate + mu * r_rate)
-            ds = (trial - stiffness * s - pressure * mu * (r - misfit)) / d
-            de = misfit - r_rate * ds
-            solved = iteration > 0 .and. abs(ds) <= small_step * s .and. abs(de) <= small_step &
-                * min(r, e)
+            ms = self%m * s
+            gain = 1.0_wp / (r + ms)
+            slack = (1.0_wp - r) - e
+            log_r = log(r) + slack
+            r_rate = -self%m * log_r * r * gain
+            misfit = ((r - old%r) + slack + ms * log_r) * r * gain
+            ! Newton's step ...
+            d = 1.0_wp / (stiffness + pressure * (r * mu_rate + mu * r_rate))
+            ds = (trial - stiffness * s - pressure * mu * (r - misfit)) * d
+            dr = r_rate * ds - misfit
+            ! ... and its correction by the second derivatives, where that is one.
+            bend_r = gain * dr * (self%m * ds - 0.5_wp * ms * dr / r)
+            bend_s = -pressure * (mu_rate * ds * (dr - self%kappa * iw * r * ds) - mu * bend_r) * d
+            bend_r = r_rate * bend_s - bend_r
+            if (abs(bend_s) <= 0.5_wp * abs(ds) .and. abs(bend_r) <= 0.5_wp * abs(dr)) then
+                ds = ds + bend_s
+                dr = dr + bend_r
+            end if
+            solved = self%m * abs(ds) <= small_step * (r + ms) &
+                .and. stiffness * abs(ds) <= small_step * trial &
+                .and. abs(dr) <= small_step * min(r, e)
             if (solved) exit
-            call move(old%r, trial / stiffness, ds, de, s, r, e)
+            s = max(s + ds, 0.05_wp * s)
+            call move_ratio(dr, r, e)
         end do
         if (.not. solved) return
 
-        ! The last step, too small to need the bracket or another logarithm.
+        ! The last step, too small to need another logarithm.
+        dr = dr / r
+        log_r = log_r + dr * (1.0_wp - dr * (0.5_wp - dr * third))
         s = s + ds
+        r = r + dr * r
         iw = 1.0_wp / (w0 + self%kappa * s)
         mu = self%mu_k + c * iw
-        log_r = log_r - de / r
-        r = r - de
         answer%slip = s
-        answer%state = law_state(mu=min(max(mu, self%mu_k), self%mu_s), r=min(r, 1.0_wp))
+        answer%state%mu = min(max(mu, self%mu_k), self%mu_s)
+        answer%state%r = min(r, 1.0_wp)
         answer%d_pressure = r * mu
         answer%resistance = answer%d_pressure * pressure
-        answer%d_slip = pressure * (mu * ratio_rate(self%m, s, r, log_r) - r * self%kappa * c &
+        answer%d_slip = -pressure * r * (mu * self%m * log_r / (r + self%m * s) + self%kappa * c &
             * iw**2)
     end subroutine solve
 
-    !> First estimate of slip and R: the quadratic's positive root, taken where nothing cancels.
-    pure subroutine start(r_n, full, trial, stiffness, m, s, r, e)
-        real(wp), intent(in) :: r_n          !! R at the start of the increment [-]
+    !> A start for little slip: two terms of the expansion of (s, R) in the excess traction.
+    pure subroutine start_near(self, c, iw0, excess, stiffness, pressure, r_n, s, r, e, good)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: c, iw0      !! c and 1/w(0) of section 3 [-]
+        real(wp), intent(in) :: excess      !! trial traction beyond the strength [F/L^2]
+        real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
+        real(wp), intent(in) :: pressure    !! contact pressure [F/L^2]
+        real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
+        real(wp), intent(out) :: s, r, e    !! slip [L], R and 1 - R
+        logical, intent(out) :: good        !! R changes so little that the expansion holds
+        real(wp), parameter :: little = 0.2_wp, least_ratio = 1.0e-3_wp
+        real(wp) :: full, fall, rate, d, dr, bend_s, bend_r
+
+        s = 0.0_wp
+        r = r_n
+        e = 1.0_wp - r_n
+        good = r_n > least_ratio
+        if (.not. good) return
+        full = (self%mu_k + c * iw0) * pressure
+        fall = self%kappa * c * iw0**2 * pressure
+        rate = -self%m * log(r_n)
+        d = 1.0_wp / (stiffness - r_n * fall + full * rate)
+        s = excess * d
+        dr = rate * s
+        bend_r = dr * self%m * s / r_n
+        bend_s = (fall * s * (dr - self%kappa * iw0 * r_n * s) + full * bend_r) * d
+        bend_r = rate * bend_s - bend_r
+        good = dr <= little * min(r, e) .and. self%m * s <= little * r_n .and. abs(bend_r) &
+            <= little * dr
+        s = s + bend_s
+        r = r + (dr + bend_r)
+        e = e - (dr + bend_r)
+    end subroutine start_near
+
+    !> A start for any slip: `-ln R ~ rate/m (1 - R)`, right at R_n, and `mu ~ mu(0)` make the
+    !> equation a quadratic. Its positive root, taken where nothing cancels.
+    pure subroutine start_far(self, excess, full, stiffness, r_n, s, r, e)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: excess       !! trial traction beyond the strength [F/L^2]
         real(wp), intent(in) :: full         !! traction of the normal sliding surface, mu p [F/L^2]
-        real(wp), intent(in) :: trial        !! trial traction [F/L^2]
         real(wp), intent(in) :: stiffness    !! tangential stiffness [F/L^3]
-        real(wp), intent(in) :: m            !! rate at which R approaches 1 [1/L]
+        real(wp), intent(in) :: r_n          !! R at the start of the increment [-]
         real(wp), intent(out) :: s, r, e     !! slip [L], R and 1 - R
-        real(wp) :: excess, b, root
+        real(wp) :: e_n, z, rate, b, root, shrink
 
-        excess = trial - r_n * full
-        b = stiffness + m * (full - trial)
-        root = abs(b) + sqrt(b**2 + 4.0_wp * stiffness * m * excess)
+        e_n = 1.0_wp - r_n
+        z = e_n / (1.0_wp + r_n)
+        rate = self%m * (1.0_wp + z) * (1.0_wp + z**2 / (3.0_wp - 1.8_wp * z**2))
+        b = 0.5_wp * (stiffness + rate * (e_n * full - excess))
+        root = sqrt(b**2 + stiffness * rate * excess)
         if (b > 0.0_wp) then
-            s = 2.0_wp * excess / root
+            s = excess / (b + root)
         else
-            s = 0.5_wp * root / (stiffness * m)
+            s = (root - b) / (stiffness * rate)
         end if
-        s = min(s, trial / stiffness)
-        e = (1.0_wp - r_n) / (1.0_wp + m * s)
-        r = (r_n + m * s) / (1.0_wp + m * s)
-    end subroutine start
-
-    !> One Newton step, kept inside the bracket 0 < s <= s_max, R_n <= R <= 1.
-    pure subroutine move(r_n, s_max, ds, de, s, r, e)
-        real(wp), intent(in) :: r_n           !! R at the start of the increment [-]
-        real(wp), intent(in) :: s_max         !! slip that would unload the contact [L]
-        real(wp), intent(in) :: ds, de        !! Newton step in slip [L] and in 1 - R
-        real(wp), intent(inout) :: s, r, e    !! slip [L], R and 1 - R
-
-        s = min(max(s + ds, 0.05_wp * s), s_max)
-        if (r < 0.5_wp) then
-            r = min(max(r - de, r_n, 0.05_wp * r), 1.0_wp - 0.05_wp * e)
-            e = 1.0_wp - r
-        else
-            e = min(max(e + de, 0.05_wp * e), 1.0_wp - max(r_n, 0.05_wp * r))
-            r = 1.0_wp - e
-        end if
-    end subroutine move
+        shrink = 1.0_wp / (1.0_wp + rate * s)
+        r = (r_n + rate * s) * shrink
+        e = e_n * shrink
+    end subroutine start_far
 
     !> R after the slip `m s` of section 3: Newton's method from the left, where it climbs without
     !> fail because the equation is concave. `log_r` is zero for R = 0, which only a contact that
@@ -233,7 +276,7 @@ contains
         real(wp), intent(out) :: r        !! R at its end [-]
         real(wp), intent(out) :: log_r    !! ln R
         integer, parameter :: max_iterations = 100
-        real(wp) :: e, de
+        real(wp) :: e, slack, dr
         integer :: iteration
 
         r = (r_n + ms) / (1.0_wp + ms)
@@ -241,12 +284,12 @@ contains
         log_r = 0.0_wp
         if (.not. r > 0.0_wp) return
         do iteration = 1, max_iterations
-            log_r = log_of_ratio(r, e)
-            de = r / (r + ms) * (ratio_gained(r_n, r, e) + ms * log_r)
-            log_r = log_r - de / r
-            e = e + de
-            r = merge(r - de, 1.0_wp - e, r < 0.5_wp)
-            if (abs(de) <= small_step * min(r, e)) exit
+            slack = (1.0_wp - r) - e
+            log_r = log(r) + slack
+            dr = -r / (r + ms) * ((r - r_n) + slack + ms * log_r)
+            log_r = log_r + dr / r
+            call move_ratio(dr, r, e)
+            if (abs(dr) <= small_newton_step * min(r, e)) exit
         end do
     end subroutine similarity_ratio
 
@@ -276,30 +319,18 @@ contains
         rate = -m * log_r * r / (r + m * s)
     end function ratio_rate
 
-    !> R - R_n without cancellation near 1.
-    pure function ratio_gained(r_n, r, e) result(gained)
-        real(wp), intent(in) :: r_n, r, e
-        real(wp) :: gained
+    !> A step in R, in whichever of R and 1 - R is the smaller number; neither loses its sign.
+    pure subroutine move_ratio(dr, r, e)
+        real(wp), intent(in) :: dr
+        real(wp), intent(inout) :: r, e
 
-        gained = merge(r - r_n, (1.0_wp - r_n) - e, r < 0.5_wp)
-    end function ratio_gained
-
-    !> ln R, exact near 1: `r` is a rounded 1 - e there, and a Taylor term makes up for the
-    !> rounding.
-    pure function log_of_ratio(r, e) result(log_r)
-        real(wp), intent(in) :: r, e
-        real(wp) :: log_r
-
-        log_r = log(r) + merge(0.0_wp, ((1.0_wp - r) - e) / r, r < 0.5_wp)
-    end function log_of_ratio
-
-    !> ln(1 - e) without a logarithm: within 1e-3 of it for R > 0.1, a sound first step anywhere.
-    pure function rough_log(e) result(log_r)
-        real(wp), intent(in) :: e
-        real(wp) :: log_r, z
-
-        z = e / (e - 2.0_wp)
-        log_r = 2.0_wp * z * (1.0_wp + z**2 / (3.0_wp - 1.8_wp * z**2))
-    end function rough_log
+        r = max(r + dr, 0.05_wp * r)
+        e = max(e - dr, 0.05_wp * e)
+        if (r < 0.5_wp) then
+            e = 1.0_wp - r
+        else
+            r = 1.0_wp - e
+        end if
+    end subroutine move_ratio
 
 end module friction_subloading_law
