@@ -6,6 +6,8 @@
 #ifndef STICKSLIP_FRICTION_H
 #define STICKSLIP_FRICTION_H
 
+#include <stdint.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -37,6 +39,16 @@ enum friction_status {
  * Returns a friction_status. */
 int friction_update(int ndir, const double *du, double dtime, int nprops, const double *props,
                     int nstatv, double *statev, double *traction, double *tangent);
+
+/* Friction update of n contact points, all with the same constants and the same increment of time.
+ * Arrays are component-major: component j of point i is du[j*n + i]; tangent entry (i,j) of point k is
+ * tangent[(j*ndir + i)*n + k]. `status` (n numbers) receives a friction_status for each point; bad input at
+ * a point leaves that point's data untouched and harms no other point. Sizes as in friction_update.
+ * Large batches are shared out among OMP_NUM_THREADS threads; the results do not depend on how many.
+ * Returns the worst status: the lowest negative one, else FRICTION_SNAP_BACK where a point has it, else
+ * FRICTION_OK. */
+int friction_update_batch(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
+                          int nstatv, double *statev, double *traction, double *tangent, int *status);
 
 /* The tangential part alone, for hosts that hand in the pressure.
  *   ndir      tangential components: 1 or 2

@@ -17,8 +17,9 @@ module friction_mod
     implicit none
     private
 
-    public :: friction_update, update_arrays, friction_update_frame, friction_tangential, &
+    public :: friction_update, friction_update_frame, friction_tangential, friction_update_batch, &
         friction_message, friction_version
+    public :: update_arrays, update_arrays_batch   ! for the C interface
     public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
         friction_null_pointer, friction_ok, friction_snap_back
@@ -41,6 +42,39 @@ module friction_mod
     integer, parameter, public :: statev_slip = 7          !! accumulated slip [L]
     integer, parameter, public :: statev_dissipation = 8   !! accumulated dissipated energy per
                                                            !! area [F/L]
+
+    interface
+        !> Friction update of many contact points, all with the same constants and the same
+        !> increment of time (docs/performance.md). Arrays are component-major: component j of point
+        !> i is du(i, j). Bad input at a point leaves that point's data untouched and harms no other
+        !> point.
+        module subroutine friction_update_batch(du, dtime, props, statev, traction, tangent, status)
+            implicit none
+            real(wp), intent(in), contiguous :: du(:, :)   !! increments of relative displacement;
+                                                           !! n points, 2 or 3 components [L]
+            real(wp), intent(in) :: dtime                  !! increment of time, >= 0 [T]
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
+            real(wp), intent(inout), contiguous :: statev(:, :)     !! states, start in, end out; n
+                                                                    !! points, 8 or more
+            real(wp), intent(inout), contiguous :: traction(:, :)   !! shape of du [F/L^2]
+            real(wp), intent(inout), contiguous :: tangent(:, :, :)   !! dT_i/d(du_j) of point k is
+                                                                      !! tangent(k, i, j) [F/L^3]
+            integer, intent(out), contiguous :: status(:)   !! a named code for each of the n points
+        end subroutine friction_update_batch
+
+        !> The same with explicit sizes.
+        module subroutine update_arrays_batch(n, ndir, du, dtime, nprops, props, nstatv, statev, &
+            traction, tangent, status)
+            implicit none
+            integer(int64), intent(in) :: n                         !! points
+            integer, intent(in) :: ndir, nprops, nstatv             !! sizes
+            real(wp), intent(in) :: du(n, ndir), dtime, props(nprops)
+            real(wp), intent(inout) :: statev(n, nstatv), traction(n, ndir)
+            real(wp), intent(inout), target :: tangent(n, ndir, ndir)
+            integer, intent(out) :: status(n)
+        end subroutine update_arrays_batch
+    end interface
 
 contains
 

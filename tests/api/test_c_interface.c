@@ -47,6 +47,39 @@ static void tangential_is_the_same_with_the_pressure_handed_in(void)
     CHECK(memcmp(a, b, sizeof a) == 0);
 }
 
+static void a_batch_is_component_major(void)
+{
+    enum { n = 3 };
+    double statev[8 * n] = {0}, traction[3 * n], tangent[9 * n], one[8] = {0}, t1[3], c1[9];
+    const double press[3] = {-2e-3, 3e-3, 4e-3};
+    double du[3 * n] = {0};
+    int status[n], i, j, k = 1;
+
+    for (j = 0; j < 3; j++)
+        du[j * n + k] = press[j];
+    CHECK(friction_update_batch(n, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+    friction_update(3, press, 0.1, 9, props, 8, one, t1, c1);
+    for (j = 0; j < 8; j++)
+        CHECK(fabs(statev[j * n + k] - one[j]) < 1e-15);
+    for (j = 0; j < 3; j++) {
+        CHECK(fabs(traction[j * n + k] - t1[j]) < 1e-14);
+        for (i = 0; i < 3; i++)
+            CHECK(fabs(tangent[(j * 3 + i) * n + k] - c1[j * 3 + i]) < 1e-11);
+    }
+    CHECK(statev[0] == 3 && statev[2] == 3 && traction[0] == 0);
+
+    du[0] = NAN;
+    CHECK(friction_update_batch(n, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status)
+          == FRICTION_BAD_INCREMENT);
+    CHECK(status[0] == FRICTION_BAD_INCREMENT && status[1] == FRICTION_OK && status[2] == FRICTION_OK);
+    CHECK(friction_update_batch(0, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+    CHECK(friction_update_batch(-1, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_BAD_SIZE);
+    CHECK(friction_update_batch(n, 3, NULL, 0.1, 9, props, 8, statev, traction, tangent, status)
+          == FRICTION_NULL_POINTER);
+    CHECK(friction_update_batch(n, 3, du, 0.1, 9, props, 8, statev, traction, tangent, NULL)
+          == FRICTION_NULL_POINTER);
+}
+
 static void bad_calls_are_codes_and_touch_nothing(void)
 {
     double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
@@ -88,6 +121,7 @@ int main(void)
 {
     update_slides_on_the_subloading_surface();
     tangential_is_the_same_with_the_pressure_handed_in();
+    a_batch_is_component_major();
     bad_calls_are_codes_and_touch_nothing();
     texts_are_constant_c_strings();
     printf("%d failures\n", failures);

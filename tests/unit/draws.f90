@@ -4,7 +4,7 @@ module draws
     implicit none
     private
 
-    public :: draw, point, random_point, random_rotation, seed_draws
+    public :: draw, point, random_point, random_rotation, random_state, seed_draws
 
     !> Constants, state and increment of a contact point.
     type :: point
@@ -48,7 +48,7 @@ contains
         real(dp), intent(in) :: decades
         logical, intent(in) :: unique
         type(point) :: p
-        real(dp) :: half, pressure, mu, r, angle, turn, reach
+        real(dp) :: half, pressure
 
         half = 0.5_dp * decades
         do
@@ -65,6 +65,18 @@ contains
             if (.not. unique) exit
             if (pressure * p%props(6) * (p%props(4) - p%props(5)) < 0.8_dp * p%props(3)) exit
         end do
+        call random_state(p, pressure, decades)
+        p%dt = decade(-3.0_dp - half, -3.0_dp + half)
+    end function random_point
+
+    !> State and increment of a closed point with given constants.
+    subroutine random_state(p, pressure, decades)
+        type(point), intent(inout) :: p
+        real(dp), intent(in) :: pressure   !! at the start [F/L^2]
+        real(dp), intent(in) :: decades    !! span of the increments
+        real(dp) :: half, mu, r, angle, turn, reach
+
+        half = 0.5_dp * decades
         mu = draw(p%props(5), p%props(4))
         r = draw(0.0_dp, 1.0_dp)
         if (draw(0.0_dp, 1.0_dp) < 0.1_dp) r = 0.0_dp
@@ -75,8 +87,7 @@ contains
         turn = angle + draw(-3.0_dp, 3.0_dp)
         reach = mu * pressure / p%props(3) * decade(-half, half)
         p%du = [draw(-0.5_dp, 0.5_dp) * pressure / p%props(2), reach * cos(turn), reach * sin(turn)]
-        p%dt = decade(-3.0_dp - half, -3.0_dp + half)
-    end function random_point
+    end subroutine random_state
 
     !> A rotation matrix, uniformly distributed: from a random unit quaternion.
     function random_rotation() result(q)
