@@ -21,6 +21,8 @@ module friction_batch_kernel
     integer, parameter :: lanes = 128       !! points of a block: its scratch data stay in cache
     integer, parameter :: widest = 8        !! lanes of the widest vectors
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
+    real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
+    real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: third = 1.0_wp / 3.0_wp
 
     !> Constants of the law and of the increment.
@@ -116,7 +118,7 @@ contains
             if (fine == 0) valid = -1.0_wp
 
             trial%p(i) = max(0.0_wp, -inc%alpha_n * zero_unless(fine, u_n + du(i, 1)))
-            if (trial%p(i) > 0.0_wp) valid = min(valid, -u_n, trial%p(i) - tiny(1.0_wp))
+            if (trial%p(i) > 0.0_wp) valid = min(valid, -u_n, trial%p(i) - smallest)
             trial%tau(i) = inc%alpha_t * sqrt(trial%q1(i)**2 + trial%q2(i)**2)
             trial%c(i) = (mu - inc%mu_k) + inc%forming
             trial%slides(i) = 0.0_wp
@@ -125,6 +127,7 @@ contains
             if (trial%p(i) <= 0.0_wp) trial%slides(i) = 0.0_wp
             fall = trial%p(i) * inc%kappa * trial%c(i)
             if (inc%alpha_t * inc%w0**2 <= fall) valid = min(valid, -trial%slides(i))
+            if (trial%slides(i) > 0.0_wp) valid = min(valid, trial%tau(i) - smallest)
             left(i) = 0
             if (valid < 0.0_wp) left(i) = 1
             n_left = n_left + left(i)
@@ -178,7 +181,7 @@ contains
         call solve(n_solved, inc, p, c, tau, r_n, packed, moves)
 
         slid%s = 0.0_wp
-        slid%r = 0.0_wp
+        slid%r = 1.0_wp
         slid%log_r = 0.0_wp
         do i = 1, n_slides
             slid%s(place(i)) = packed%s(i)
@@ -315,8 +318,7 @@ contains
             closed(i) = 0.0_wp
             if (trial%p(i) > 0.0_wp) closed(i) = 1.0_wp
             w = inc%w0 + inc%kappa * slid%s(i)
-            gain = 1.0_wp
-            if (trial%slides(i) > 0.0_wp) gain = slid%r(i) + inc%m * slid%s(i)
+            gain = slid%r(i) + inc%m * slid%s(i)
             shared = 1.0_wp / (w * gain)
             iw = gain * shared
             mu = inc%mu_k + trial%c(i) * iw
@@ -324,13 +326,11 @@ contains
             d_slip = -trial%p(i) * slid%r(i) * (mu * inc%m * slid%log_r(i) * w * shared &
                 + inc%kappa * trial%c(i) * iw**2)
             stiffness = max(inc%alpha_t + d_slip, epsilon(1.0_wp) * inc%alpha_t)
-            ! stick: R = tau/full; slip: by the trial's traction and by the stiffness
-            below = 1.0_wp
-            if (full > 0.0_wp) below = full
-            if (trial%slides(i) > 0.0_wp) below = trial%tau(i) * stiffness
+            ! Quotients of all points, though each needs only one of them: none may divide by zero.
+            below = max(full, least)
+            if (trial%slides(i) > 0.0_wp) below = max(trial%tau(i) * stiffness, least)
             below = 1.0_wp / below
-            r = closed(i) * min(trial%tau(i) * below, 1.0_wp)
-            if (full <= 0.0_wp) r = 0.0_wp
+            r = min(closed(i) * trial%tau(i) * below, 1.0_wp)
             share(i) = closed(i)
             along(i) = inc%alpha_t * closed(i)
             coupling(i) = 0.0_wp
