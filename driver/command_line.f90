@@ -8,7 +8,7 @@ module command_line
     public :: command, print_help, print_version, read_command_line
 
     type :: command
-        character(len=:), allocatable :: verb      !! run, check, --help or --version
+        character(len=:), allocatable :: verb      !! run, point, check, --help or --version
         character(len=:), allocatable :: input     !! namelist file
         character(len=:), allocatable :: output    !! directory
         character(len=:), allocatable :: stem      !! of the names of the files that a run writes
@@ -30,7 +30,7 @@ contains
         wanted%verb = argument(1)
         i = 2
         select case (wanted%verb)
-        case ('run', 'check')
+        case ('run', 'point', 'check')
             continue
         case ('--help', '-h', 'help')
             wanted%verb = '--help'
@@ -117,11 +117,14 @@ contains
 
         write (merge(error_unit, output_unit, to_error), '(a)') &
             'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
+            '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip check INPUT.nml', &
             '       stickslip --help | --version', &
             '', &
             'run    integrates the slider of INPUT.nml; writes STEM.csv, STEM_events.csv and', &
             '       STEM.png with its script STEM.gp to STEM_out, and a summary on screen', &
+            'point  takes one contact point along a path of prescribed displacements or', &
+            '       tractions; writes STEM.csv and STEM.png with its script STEM.gp', &
             'check  reads and validates INPUT.nml, and runs nothing', &
             '', &
             '--output DIR  where to write', &
@@ -138,6 +141,12 @@ contains
             '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
             '             max_iterations (25)', &
             '  &output    interval (1): steps between two rows', &
+            'and of point, beside &friction (docs/point_mode.md):', &
+            '  &point     ndir (3), cycles (1), tangent (.false.), and a path, either', &
+            '             duration [T], steps, control_n, control_t1, control_t2', &
+            '             (''displacement'' or ''traction''), target_n, target_t1, target_t2', &
+            '             [L] or [F/L^2]: lists, the i-th values belong to segment i;', &
+            '             or file = CSV with time and u_ or t_ columns, substeps (1)', &
             '', &
             'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'
     end subroutine print_help

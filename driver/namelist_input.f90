@@ -10,7 +10,8 @@ module namelist_input
     implicit none
     private
 
-    public :: above, any_number, at_least, between, fault, namelist_file, read_namelist_file, rule
+    public :: above, any_number, at_least, between, fault, namelist_file, read_namelist_file, &
+        read_number, rule
 
     !> The numbers that a key may take.
     type :: rule
@@ -51,7 +52,8 @@ module namelist_input
         type(group_seen), allocatable :: groups(:)
         type(fault), allocatable :: faults(:)
     contains
-        procedure :: get_real, get_reals, get_integer, get_choice
+        procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
+            get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
     end type namelist_file
 
@@ -527,7 +529,8 @@ contains
         allocate (values(size(tokens)))
         sound = .true.
         do i = 1, size(tokens)
-            call read_number(tokens(i), values(i), ok)
+            call read_number(tokens(i)%text, values(i), ok)
+            ok = ok .and. .not. tokens(i)%quoted
             sound = sound .and. ok
             if (.not. ok) then
                 call self%reject(group, key, 'must be a number', token=tokens(i))
@@ -569,28 +572,89 @@ contains
         character(len=:), allocatable, intent(out) :: value
         character(len=*), intent(in) :: choices(:)
         character(len=*), intent(in) :: default
+        integer, allocatable :: places(:)
+
+        value = default
+        call self%get_choices(group, key, places, choices)
+        if (size(places) > 1) then
+            call self%reject(group, key, 'takes one value, not ' // whole(size(places)))
+        else if (size(places) == 1) then
+            value = trim(choices(places(1)))
+        end if
+    end subroutine get_choice
+
+    !> A list of texts of which each is one of a few, as places in `choices`; empty if the key is
+    !> not given or one of its values is none of them.
+    subroutine get_choices(self, group, key, places, choices)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        integer, allocatable, intent(out) :: places(:)
+        character(len=*), intent(in) :: choices(:)
         type(value_token), allocatable :: tokens(:)
         character(len=:), allocatable :: list
         integer :: i
 
-        value = default
-        call gather(self, group, key, tokens)
-        if (size(tokens) == 0) return
         list = "'" // trim(choices(1)) // "'"
         do i = 2, size(choices)
             list = list // ", '" // trim(choices(i)) // "'"
         end do
         if (size(choices) > 1) list = 'one of ' // list
+        call gather(self, group, key, tokens)
+        allocate (places(size(tokens)))
+        do i = 1, size(tokens)
+            places(i) = place_in(choices, lower(tokens(i)%text))
+            if (.not. tokens(i)%quoted) then
+                call self%reject(group, key, 'must be text in quotes, ' // list, token=tokens(i))
+                places(i) = 0
+            else if (places(i) == 0) then
+                call self%reject(group, key, 'must be ' // list, token=tokens(i))
+            end if
+        end do
+        if (any(places == 0)) places = [integer ::]
+    end subroutine get_choices
+
+    !> Any text in quotes; empty if the key is not given.
+    subroutine get_text(self, group, key, value)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=:), allocatable, intent(out) :: value
+        type(value_token), allocatable :: tokens(:)
+
+        value = ''
+        call gather(self, group, key, tokens)
+        if (size(tokens) == 0) return
         if (size(tokens) > 1) then
             call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
-        else if (.not. tokens(1)%quoted) then
-            call self%reject(group, key, 'must be text in quotes, ' // list, token=tokens(1))
-        else if (.not. any(choices == lower(tokens(1)%text))) then
-            call self%reject(group, key, 'must be ' // list, token=tokens(1))
+        else if (.not. tokens(1)%quoted .or. len_trim(tokens(1)%text) == 0) then
+            call self%reject(group, key, 'must be text in quotes', token=tokens(1))
         else
-            value = lower(tokens(1)%text)
+            value = tokens(1)%text
         end if
-    end subroutine get_choice
+    end subroutine get_text
+
+    !> True or false, as Fortran writes it.
+    subroutine get_logical(self, group, key, value, default)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        logical, intent(out) :: value
+        logical, intent(in) :: default
+        type(value_token), allocatable :: tokens(:)
+        character(len=7), parameter :: words(6) = ['.true. ', 't      ', 'true   ', &
+            '.false.', 'f      ', 'false  ']
+        integer :: place
+
+        value = default
+        call gather(self, group, key, tokens)
+        if (size(tokens) == 0) return
+        place = place_in(words, lower(tokens(1)%text))
+        if (size(tokens) > 1) then
+            call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
+        else if (tokens(1)%quoted .or. place == 0) then
+            call self%reject(group, key, 'must be .true. or .false.', token=tokens(1))
+        else
+            value = place <= 3
+        end if
+    end subroutine get_logical
 
     !> Collects the values of a key in the order of their subscripts, and says that the key is
     !> known.
@@ -737,16 +801,16 @@ contains
 
     !> A real number as Fortran and its neighbours write it; also NaN and infinity, which the caller
     !> refuses by name.
-    subroutine read_number(token, value, ok)
-        type(value_token), intent(in) :: token
+    subroutine read_number(text, value, ok)
+        character(len=*), intent(in) :: text
         real(dp), intent(out) :: value
         logical, intent(out) :: ok
         character(len=:), allocatable :: word
         integer :: status, i
 
         value = 0.0_dp
-        word = lower(token%text)
-        ok = .not. token%quoted .and. len(word) > 0
+        word = lower(text)
+        ok = len(word) > 0
         if (.not. ok) return
         if (verify(word, '0123456789+-.ed') /= 0) then
             i = 1
@@ -765,6 +829,16 @@ contains
         read (word, *, iostat=status) value
         ok = status == 0
     end subroutine read_number
+
+    !> Which of the choices is it? 0: none.
+    pure function place_in(choices, text) result(place)
+        character(len=*), intent(in) :: choices(:), text
+        integer :: place
+
+        do place = size(choices), 1, -1
+            if (choices(place) == text) return
+        end do
+    end function place_in
 
     pure function lower(text) result(lowered)
         character(len=*), intent(in) :: text

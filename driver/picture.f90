@@ -5,7 +5,7 @@ module picture
     implicit none
     private
 
-    public :: draw_picture
+    public :: draw_picture, escaped, quoted, run_gnuplot
 
 contains
 
@@ -16,14 +16,22 @@ contains
         character(len=:), allocatable, intent(out) :: problem
 
         call write_script(directory // '/' // stem // '.gp', stem, problem)
-        if (len(problem) > 0) return
+        if (len(problem) == 0) call run_gnuplot(directory, stem, problem)
+    end subroutine draw_picture
+
+    !> Draws DIRECTORY/STEM.png with the script DIRECTORY/STEM.gp. `problem` says what went wrong.
+    subroutine run_gnuplot(directory, stem, problem)
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+
+        problem = ''
         if (.not. have_command('gnuplot')) then
             problem = 'no picture is drawn: gnuplot is not installed (Debian: package ' &
                 // 'gnuplot-nox); with it, run gnuplot ' // stem // '.gp in ' // directory
         else if (.not. run_in_directory(directory, 'gnuplot ' // shell_word(stem // '.gp'))) then
             problem = 'gnuplot failed on ' // stem // '.gp: no picture is drawn'
         end if
-    end subroutine draw_picture
+    end subroutine run_gnuplot
 
     subroutine write_script(name, stem, problem)
         character(len=*), intent(in) :: name, stem

@@ -6,7 +6,7 @@ module run_settings
     implicit none
     private
 
-    public :: programme, read_settings, settings
+    public :: programme, read_friction, read_settings, settings
 
     !> Drive velocity and normal traction over time, piecewise constant; the last piece goes on.
     type :: programme

@@ -3,6 +3,7 @@ program stickslip
     use, intrinsic :: iso_fortran_env, only : error_unit
     use command_line, only : command, print_help, print_version, read_command_line
     use platform, only : exit_program
+    use point_study, only : check_point, is_point_input, run_point
     use run_settings, only : settings
     use study, only : check_input, exit_bad_input, exit_done, run_input
     implicit none
@@ -21,8 +22,14 @@ program stickslip
     select case (wanted%verb)
     case ('run')
         call run_input(wanted, exit_status)
+    case ('point')
+        call run_point(wanted, exit_status)
     case ('check')
-        call check_input(wanted, run, exit_status)
+        if (is_point_input(wanted%input)) then
+            call check_point(wanted, exit_status)
+        else
+            call check_input(wanted, run, exit_status)
+        end if
     case ('--version')
         call print_version()
     case default

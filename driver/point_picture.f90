@@ -1,0 +1,56 @@
+!> The picture of a point's path: the hysteresis loop, and friction over slip. Drawn by gnuplot from
+!> the CSV file; its script stays beside it.
+module point_picture
+    use picture, only : escaped, quoted, run_gnuplot
+    use text_file, only : output_file
+    implicit none
+    private
+
+    public :: draw_point_picture
+
+contains
+
+    !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png with it. `problem` says what went
+    !> wrong.
+    subroutine draw_point_picture(directory, stem, problem)
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+        type(output_file) :: script
+
+        call script%create(directory // '/' // stem // '.gp')
+        call put('# Picture of a contact point''s path: gnuplot ' // stem // '.gp')
+        call put('file = ' // quoted(stem // '.csv'))
+        call put('set terminal pngcairo size 1200,600 font "Sans,12"')
+        call put('set output ' // quoted(stem // '.png'))
+        call put('set datafile separator ","')
+        call put('set style line 1 linewidth 1.5 linecolor "#9400d3"')
+        call put('set style line 2 linewidth 1.5 linecolor "#0072b2"')
+        call put('set style line 9 linewidth 1 linecolor "gray60"')
+        call put('set multiplot layout 1,2 title ' // quoted(escaped(stem)))
+        call put('set grid')
+        call put('set key outside top right horizontal')
+        call put('set xlabel "relative displacement u_{t1} [L]"')
+        call put('set ylabel "traction t_{t1} [F/L^2]"')
+        call put('plot file using "u_t1":"t_t1" with lines ls 1 title "path"')
+        call put('set xlabel "slip [L]"')
+        call put('set ylabel "friction coefficient [-]"')
+        call put('plot file using "slip":(abs(column("t_t1") / column("t_n"))) \')
+        call put('         with lines ls 9 title "|t_{t1}/t_n|", \')
+        call put('     file using "slip":"mu" with lines ls 2 title "mu"')
+        call put('unset multiplot')
+        call script%finish()
+        problem = ''
+        if (script%failed) problem = 'cannot write ' // directory // '/' // stem // '.gp'
+        if (.not. script%failed) call run_gnuplot(directory, stem, problem)
+
+    contains
+
+        subroutine put(line)
+            character(len=*), intent(in) :: line
+
+            call script%write_line(line)
+        end subroutine put
+
+    end subroutine draw_point_picture
+
+end module point_picture

@@ -1,0 +1,94 @@
+!> Writes the rows of a point's path as CSV. What is written stays written, whatever comes.
+module point_recorder
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : statev_dissipation, statev_mu, statev_r, statev_slip, statev_status
+    use material_point, only : contact_point
+    use text_file, only : output_file
+    implicit none
+    private
+
+    public :: point_csv
+
+    type :: point_csv
+        type(output_file) :: file
+        logical :: tangent = .false.   !! has columns for it
+    contains
+        procedure :: start, write_row
+    end type point_csv
+
+contains
+
+    subroutine start(self, name, ndir, tangent)
+        class(point_csv), intent(inout) :: self
+        character(len=*), intent(in) :: name
+        integer, intent(in) :: ndir       !! directions
+        logical, intent(in) :: tangent    !! columns for it, in column-major order
+        character(len=:), allocatable :: header
+        character(len=6) :: entry
+        integer :: i, j
+
+        header = 'time,u_n,u_t1,u_t2,t_n,t_t1,t_t2'
+        if (ndir == 2) header = 'time,u_n,u_t1,t_n,t_t1'
+        header = header // ',status,mu,R,slip,dissipation,iterations'
+        self%tangent = tangent
+        if (tangent) then
+            do j = 1, ndir
+                do i = 1, ndir
+                    write (entry, '(a, 2i1)') ',d', i, j
+                    header = header // trim(entry)
+                end do
+            end do
+        end if
+        call self%file%create(name)
+        call self%file%write_line(header)
+        call self%file%flush_lines()
+    end subroutine start
+
+    subroutine write_row(self, time, point, iterations)
+        class(point_csv), intent(inout) :: self
+        real(dp), intent(in) :: time             !! [T]
+        type(contact_point), intent(in) :: point
+        integer, intent(in) :: iterations        !! that the increment took
+        character(len=:), allocatable :: line
+        character(len=12) :: count
+        integer :: j
+
+        line = in_full(time)
+        call add(point%u)
+        call add(point%traction)
+        write (count, '(a, i0)') ',', nint(point%statev(statev_status))
+        line = line // trim(count)
+        call add(point%statev([statev_mu, statev_r, statev_slip, statev_dissipation]))
+        write (count, '(a, i0)') ',', iterations
+        line = line // trim(count)
+        if (self%tangent) then
+            do j = 1, size(point%u)
+                call add(point%tangent(:, j))
+            end do
+        end if
+        call self%file%write_line(line)
+
+    contains
+
+        subroutine add(numbers)
+            real(dp), intent(in) :: numbers(:)
+            integer :: i
+
+            do i = 1, size(numbers)
+                line = line // ',' // in_full(numbers(i))
+            end do
+        end subroutine add
+
+    end subroutine write_row
+
+    !> 17 significant digits, so that reading them back gives the same bits.
+    pure function in_full(number) result(text)
+        real(dp), intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=24) :: buffer
+
+        write (buffer, '(es24.16e3)') number
+        text = trim(adjustl(buffer))
+    end function in_full
+
+end module point_recorder

@@ -1,0 +1,234 @@
+!> The point mode: checks its input, takes one contact point along its path, and reports.
+module point_study
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use command_line, only : command
+    use friction_mod, only : friction_message, statev_dissipation, statev_slip
+    use material_point, only : contact_point, load_report, virgin_point
+    use namelist_input, only : namelist_file, read_namelist_file
+    use platform, only : make_directory
+    use point_picture, only : draw_point_picture
+    use point_recorder, only : point_csv
+    use point_settings, only : group, point_run, read_point_settings
+    use progress_bar, only : progress
+    use study, only : exit_bad_input, exit_done, exit_failed
+    implicit none
+    private
+
+    public :: check_point, is_point_input, run_point
+
+    !> The largest value that a quantity takes, and when.
+    type :: peak
+        real(dp) :: value = 0.0_dp
+        real(dp) :: time = 0.0_dp   !! [T]
+    end type peak
+
+    !> What a path has come to.
+    type :: outcome
+        character(len=:), allocatable :: failure   !! empty if the path was followed to its end
+        integer :: increments = 0
+        integer :: iterations = 0, most_iterations = 0
+        integer :: cuts = 0                        !! parts of increments that were halved
+        integer :: snap_backs = 0                  !! increments that saw several equilibria
+        real(dp) :: time = 0.0_dp                  !! reached [T]
+        type(peak) :: pressure, shear              !! |t_n|, |t_t| [F/L^2]
+    end type outcome
+
+contains
+
+    !> Is this an input of the point mode? Files that cannot be read are not.
+    function is_point_input(name) result(is_point)
+        character(len=*), intent(in) :: name
+        logical :: is_point
+        type(namelist_file) :: file
+        character(len=:), allocatable :: problem
+
+        call read_namelist_file(name, file, problem)
+        is_point = file%has_group(group)
+    end function is_point_input
+
+    !> Reads and validates; says what is wrong, all of it.
+    subroutine read_input(wanted, run, exit_status)
+        type(command), intent(in) :: wanted
+        type(point_run), intent(out) :: run
+        integer, intent(out) :: exit_status
+        type(namelist_file) :: file
+        character(len=:), allocatable :: problem
+
+        exit_status = exit_bad_input
+        call read_namelist_file(wanted%input, file, problem)
+        if (len(problem) > 0) then
+            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': ', problem
+            return
+        end if
+        call read_point_settings(file, run)
+        if (size(file%faults) > 0) then
+            write (error_unit, '(a)', advance='no') file%describe_faults()
+            return
+        end if
+        exit_status = exit_done
+    end subroutine read_input
+
+    subroutine check_point(wanted, exit_status)
+        type(command), intent(in) :: wanted
+        integer, intent(out) :: exit_status
+        type(point_run) :: run
+
+        call read_input(wanted, run, exit_status)
+        if (exit_status == exit_done) write (output_unit, '(2a, i0, a)') wanted%input, &
+            ': valid, ', nint(run%loading%increments()), ' increments'
+    end subroutine check_point
+
+    !> Reads, validates, follows the path and reports. What has been computed stays on disk.
+    subroutine run_point(wanted, exit_status)
+        type(command), intent(in) :: wanted
+        integer, intent(out) :: exit_status
+        type(point_run) :: run
+        type(point_csv) :: records
+        type(contact_point) :: point
+        type(outcome) :: result
+        character(len=:), allocatable :: problem, base
+
+        call read_input(wanted, run, exit_status)
+        if (exit_status /= exit_done) return
+
+        exit_status = exit_bad_input
+        base = wanted%output // '/' // wanted%stem
+        if (.not. make_directory(wanted%output)) then
+            write (error_unit, '(3a)') "stickslip: cannot write to the directory '", &
+                wanted%output, "'"
+            return
+        end if
+        call records%start(base // '.csv', run%loading%ndir, run%tangent)
+        if (records%file%failed) then
+            write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
+            return
+        end if
+
+        call follow_path(run, records, .not. wanted%quiet, point, result)
+        call records%file%finish()
+        if (records%file%failed .and. len(result%failure) == 0) result%failure = &
+            'at its end: cannot write the last rows (disk full?)'
+        if (.not. wanted%quiet) call print_summary(point, result)
+        exit_status = exit_done
+        if (len(result%failure) > 0) then
+            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': the run failed ', &
+                result%failure
+            write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
+            exit_status = exit_failed
+        end if
+        if (.not. wanted%plot) return
+        call draw_point_picture(wanted%output, wanted%stem, problem)
+        if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
+    end subroutine run_point
+
+    !> Cycles of segments of increments, a row each. `failure` of the outcome says when and why, if
+    !> the path ends early; the last row is then the last state that could be carried.
+    subroutine follow_path(run, records, show_progress, point, result)
+        type(point_run), intent(in) :: run
+        type(point_csv), intent(inout) :: records
+        logical, intent(in) :: show_progress
+        type(contact_point), intent(out) :: point
+        type(outcome), intent(out) :: result
+        type(progress) :: bar
+        real(dp), dimension(run%loading%ndir) :: start, from, to
+        real(dp) :: time
+        integer :: cycle_number, i, k, status
+
+        result%failure = ''
+        call virgin_point(run%props, run%loading%ndir, point, status)
+        if (status < 0) result%failure = 'at the start: ' // friction_message(status)
+        time = 0.0_dp
+        call records%write_row(time, point, 0)
+        call bar%begin(show_progress)
+        associate (path => run%loading)
+            do cycle_number = 1, path%cycles
+                do i = 1, size(path%duration)
+                    start = path%starting_values(i, result%increments == 0, point%u, point%traction)
+                    to = start
+                    do k = 1, path%steps(i)
+                        if (len(result%failure) > 0) exit
+                        from = to
+                        to = start + (path%target(:, i) - start) * (real(k, dp) / path%steps(i))
+                        if (k == path%steps(i)) to = path%target(:, i)
+                        call take_increment(path%by_traction(:, i), &
+                            path%duration(i) / path%steps(i), &
+                            time + path%duration(i) * (real(k, dp) / path%steps(i)))
+                    end do
+                    time = time + path%duration(i)
+                end do
+                if (len(result%failure) > 0) exit
+            end do
+            call bar%clear()
+        end associate
+
+    contains
+
+        subroutine take_increment(by_traction, dt, end_time)
+            logical, intent(in) :: by_traction(:)
+            real(dp), intent(in) :: dt, end_time   !! [T]
+            type(load_report) :: report
+            character(len=60) :: place
+
+            call point%load(by_traction, from, to, dt, report)
+            result%time = end_time - (1.0_dp - report%done) * dt
+            result%iterations = result%iterations + report%iterations
+            result%most_iterations = max(result%most_iterations, report%iterations)
+            result%cuts = result%cuts + report%cuts
+            if (report%snap_back) result%snap_backs = result%snap_backs + 1
+            write (place, '(a, es13.6, a, i0, a)') 'at time ', result%time, ', increment ', &
+                result%increments + 1, ': '
+            if (len(report%failure) > 0) result%failure = trim(place) // ' ' // report%failure
+            if (.not. report%done > 0.0_dp) return
+            if (len(report%failure) == 0) result%increments = result%increments + 1
+            call raise(result%pressure, abs(point%traction(1)), result%time)
+            call raise(result%shear, norm2(point%traction(2:)), result%time)
+            call records%write_row(result%time, point, report%iterations)
+            if (records%file%failed) result%failure = trim(place) &
+                // ' cannot write the rows (disk full?)'
+            call bar%show(real(result%increments, dp) / real(run%loading%increments(), dp))
+        end subroutine take_increment
+
+    end subroutine follow_path
+
+    pure subroutine raise(highest, value, time)
+        type(peak), intent(inout) :: highest
+        real(dp), intent(in) :: value, time
+
+        if (value > highest%value) highest = peak(value, time)
+    end subroutine raise
+
+    subroutine print_summary(point, result)
+        type(contact_point), intent(in) :: point
+        type(outcome), intent(in) :: result
+        real(dp) :: dissipated
+
+        dissipated = point%statev(statev_dissipation)
+        write (output_unit, '(a, i0, a, es12.5, a)') 'increments         ', result%increments, &
+            ' to time ', result%time, ' [T]'
+        write (output_unit, '(a, i0, a, i0)') 'Newton iterations  ', result%iterations, &
+            ', most in an increment ', result%most_iterations
+        if (result%cuts > 0) write (output_unit, '(a, i0, a)') 'cuts               ', &
+            result%cuts, ' times an increment or a part of it was halved'
+        if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
+            result%snap_backs, &
+            ' increments saw several equilibria: take more steps or a larger alpha_t'
+        call print_peak('largest pressure   ', result%pressure)
+        call print_peak('largest shear      ', result%shear)
+        write (output_unit, '(a, es14.6, a)') 'slip               ', point%statev(statev_slip), &
+            ' [L]'
+        write (output_unit, '(a, es14.6, a)') 'work               ', point%work, ' [F/L] ='
+        write (output_unit, '(a, es14.6)') '  stored           ', point%stored()
+        write (output_unit, '(a, es14.6)') '  dissipated       ', dissipated
+        write (output_unit, '(a, es14.6)') '  unbalanced       ', &
+            point%work - point%stored() - dissipated
+    end subroutine print_summary
+
+    subroutine print_peak(title, highest)
+        character(len=*), intent(in) :: title
+        type(peak), intent(in) :: highest
+
+        write (output_unit, '(a, es14.6, a, es12.5)') title, highest%value, ' [F/L^2] at time ', &
+            highest%time
+    end subroutine print_peak
+
+end module point_study
