@@ -174,9 +174,8 @@ contains
         real(dp) :: du(size(values))
 
         du(2:) = (values(2:) - old%traction(2:)) / old%props(3)
-        du(1) = values(1) / old%props(2) - old%statev(statev_u_n)
+        du(1) = min(values(1), 0.0_dp) / old%props(2) - old%statev(statev_u_n)
         if (values(1) >= 0.0_dp) du(1) = max(du(1), 0.0_dp)   ! an open point stays where it is
-        if (values(1) >= 0.0_dp .and. old%statev(statev_u_n) >= 0.0_dp) du(1) = 0.0_dp
     end function elastic_answer
 
     !> Newton's correction of the displacements that are free.

@@ -12,10 +12,12 @@ contains
 
     !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png with it. `problem` says what went
     !> wrong.
-    subroutine draw_point_picture(directory, stem, problem)
+    subroutine draw_point_picture(directory, stem, ndir, problem)
         character(len=*), intent(in) :: directory, stem
+        integer, intent(in) :: ndir   !! directions, 2 or 3
         character(len=:), allocatable, intent(out) :: problem
         type(output_file) :: script
+        character(len=:), allocatable :: shear   !! |t_t|
 
         call script%create(directory // '/' // stem // '.gp')
         call put('# Picture of a contact point''s path: gnuplot ' // stem // '.gp')
@@ -25,17 +27,26 @@ contains
         call put('set datafile separator ","')
         call put('set style line 1 linewidth 1.5 linecolor "#9400d3"')
         call put('set style line 2 linewidth 1.5 linecolor "#0072b2"')
+        call put('set style line 3 linewidth 1.5 linecolor "#d55e00"')
         call put('set style line 9 linewidth 1 linecolor "gray60"')
         call put('set multiplot layout 1,2 title ' // quoted(escaped(stem)))
         call put('set grid')
+        call put('set xtics font ",9"')
         call put('set key outside top right horizontal')
-        call put('set xlabel "relative displacement u_{t1} [L]"')
-        call put('set ylabel "traction t_{t1} [F/L^2]"')
-        call put('plot file using "u_t1":"t_t1" with lines ls 1 title "path"')
+        call put('set xlabel "relative displacement [L]"')
+        call put('set ylabel "tangential traction [F/L^2]"')
+        shear = 'abs(column("t_t1"))'
+        if (ndir == 2) then
+            call put('plot file using "u_t1":"t_t1" with lines ls 1 title "t1"')
+        else
+            call put('plot file using "u_t1":"t_t1" with lines ls 1 title "t1", \')
+            call put('     file using "u_t2":"t_t2" with lines ls 3 title "t2"')
+            shear = 'sqrt(column("t_t1")**2 + column("t_t2")**2)'
+        end if
         call put('set xlabel "slip [L]"')
         call put('set ylabel "friction coefficient [-]"')
-        call put('plot file using "slip":(abs(column("t_t1") / column("t_n"))) \')
-        call put('         with lines ls 9 title "|t_{t1}/t_n|", \')
+        call put('plot file using "slip":(' // shear // ' / abs(column("t_n"))) \')
+        call put('         with lines ls 9 title "|t_t| / |t_n|", \')
         call put('     file using "slip":"mu" with lines ls 2 title "mu"')
         call put('unset multiplot')
         call script%finish()

@@ -117,7 +117,7 @@ contains
             exit_status = exit_failed
         end if
         if (.not. wanted%plot) return
-        call draw_point_picture(wanted%output, wanted%stem, problem)
+        call draw_point_picture(wanted%output, wanted%stem, run%loading%ndir, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_point
 
