@@ -131,13 +131,14 @@ contains
         type(outcome), intent(out) :: result
         type(progress) :: bar
         real(dp), dimension(run%loading%ndir) :: start, from, to
-        real(dp) :: time
+        real(dp) :: time, total
         integer :: cycle_number, i, k, status
 
         result%failure = ''
         call virgin_point(run%props, run%loading%ndir, point, status)
         if (status < 0) result%failure = 'at the start: ' // friction_message(status)
         time = 0.0_dp
+        total = run%loading%increments()
         call records%write_row(time, point, 0)
         call bar%begin(show_progress)
         associate (path => run%loading)
@@ -185,7 +186,7 @@ contains
             call records%write_row(result%time, point, report%iterations)
             if (records%file%failed) result%failure = trim(place) &
                 // ' cannot write the rows (disk full?)'
-            call bar%show(real(result%increments, dp) / real(run%loading%increments(), dp))
+            call bar%show(result%increments / total)
         end subroutine take_increment
 
     end subroutine follow_path
