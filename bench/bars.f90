@@ -18,6 +18,7 @@ contains
         type(deviation), intent(in) :: checked   !! of the batch routine, untimed
         logical, intent(out) :: right            !! all results are
         real(dp) :: random, wide
+        character(len=100) :: line
         type(deviation) :: batch, scalar
 
         call costs%say('')
@@ -47,6 +48,11 @@ contains
         call no_more('batch from scalar, tangent, by the stiffness', tangent_bar, batch%tangent)
         call none('points that failed, scalar and batch', scalar%failures + batch%failures)
         call none('negative slip increments, scalar and batch', scalar%backward + batch%backward)
+        if (costs%disturbed() > 0) then
+            write (line, '(i0, a)') costs%disturbed(), &
+                ' rows have a median beyond 1.25 times the ' // 'lowest: the machine was not idle'
+            call costs%say(trim(line))
+        end if
         right = max(batch%traction, batch%state) <= traction_bar &
             .and. batch%tangent <= tangent_bar .and. scalar%failures + batch%failures &
             + scalar%backward + batch%backward == 0
@@ -79,7 +85,6 @@ contains
             character(len=*), intent(in) :: what, sign
             real(dp), intent(in) :: bar, measured
             logical, intent(in) :: met
-            character(len=100) :: line
 
             write (line, '(a60, a4, f6.1, f12.2, 2x, a)') what // repeat(' ', 60), sign, bar, &
                 measured, verdict(met)
@@ -90,7 +95,6 @@ contains
         subroutine no_more(what, bar, measured)
             character(len=*), intent(in) :: what
             real(dp), intent(in) :: bar, measured
-            character(len=100) :: line
 
             write (line, '(a60, a4, es6.0e2, es12.1, 2x, a)') what // repeat(' ', 60), '<=', bar, &
                 measured, verdict(measured <= bar)
@@ -100,7 +104,6 @@ contains
         subroutine none(what, measured)
             character(len=*), intent(in) :: what
             integer, intent(in) :: measured
-            character(len=100) :: line
 
             write (line, '(a60, a4, i6, i12, 2x, a)') what // repeat(' ', 60), '=', 0, measured, &
                 verdict(measured == 0)

@@ -28,6 +28,7 @@ module cost_table
         procedure :: say
         procedure :: cost
         procedure :: worst
+        procedure :: disturbed
         procedure :: finish
     end type table
 
@@ -152,6 +153,16 @@ contains
             if (self%rows(i)%routine == routine) apart = merge_deviations(apart, self%rows(i)%apart)
         end do
     end function worst
+
+    !> Measurements that some other program had a part in: half of their repetitions took much
+    !> longer than the shortest.
+    pure function disturbed(self) result(number_of_rows)
+        class(table), intent(in) :: self
+        integer :: number_of_rows
+        real(dp), parameter :: much = 1.25_dp
+
+        number_of_rows = count(self%rows%median > much * self%rows%lowest)
+    end function disturbed
 
     subroutine finish(self)
         class(table), intent(inout) :: self

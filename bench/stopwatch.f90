@@ -25,7 +25,7 @@ contains
         integer, intent(in) :: n   !! points in a repetition
         integer :: repetitions     !! odd, 11 to 501
 
-        repetitions = max(11, min(501, 3000000 / n))
+        repetitions = max(11, min(501, 20000000 / n))
         repetitions = repetitions + 1 - mod(repetitions, 2)
     end function repetitions_for
 
