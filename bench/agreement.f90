@@ -2,7 +2,7 @@
 module agreement
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use contact_sets, only : contact_set, props
-    use friction_mod, only : friction_update, statev_mu, statev_r, statev_slip
+    use friction_mod, only : friction_update, statev_mu, statev_r, statev_slip, statev_u_et
     implicit none
     private
 
@@ -26,6 +26,7 @@ module agreement
         real(dp) :: traction = 0.0_dp   !! difference by the pressure [-]
         real(dp) :: state = 0.0_dp      !! difference by the natural scale of each variable [-]
         real(dp) :: tangent = 0.0_dp    !! difference by the stiffness [-]
+        real(dp) :: slip = 0.0_dp       !! difference of the slip by the path [-]
         integer :: failures = 0         !! points with a negative status, in either routine
         integer :: backward = 0         !! points that slid by less than nothing, in either
     end type deviation
@@ -65,20 +66,24 @@ contains
         type(point_results), intent(in) :: one       !! gives the scales
         type(point_results), intent(in) :: other
         type(deviation), intent(inout) :: apart      !! the worst until now, updated
-        real(dp) :: pressure, reach, scale(8)
+        real(dp) :: pressure, reach, trial, scale(8)
 
         if (min(one%status, other%status) < 0) apart%failures = apart%failures + 1
         if (min(one%statev(statev_slip), other%statev(statev_slip)) < before(statev_slip)) then
             apart%backward = apart%backward + 1
         end if
 
+        ! Slip is what the trial elastic displacement loses: the scale of both is its length.
         pressure = -one%traction(1)
         reach = pressure / props(3)
+        trial = norm2(before(statev_u_et:statev_u_et + 1)) + path
         scale = [1.0_dp, pressure / props(2), reach, reach, one%statev(statev_mu), &
-            one%statev(statev_r), path, props(4) * pressure * path]
+            one%statev(statev_r), trial, props(4) * pressure * trial]
         apart%traction = worse(apart%traction, maxval_of(abs(other%traction - one%traction)) &
             / pressure)
         apart%state = worse(apart%state, maxval_of(abs(other%statev - one%statev) / scale))
+        apart%slip = worse(apart%slip, abs(other%statev(statev_slip) - one%statev(statev_slip)) &
+            / path)
         apart%tangent = worse(apart%tangent, maxval_of([abs(other%tangent - one%tangent)]) &
             / props(3))
     end subroutine compare_point
@@ -89,7 +94,8 @@ contains
         type(deviation) :: both
 
         both = deviation(worse(a%traction, b%traction), worse(a%state, b%state), &
-            worse(a%tangent, b%tangent), a%failures + b%failures, a%backward + b%backward)
+            worse(a%tangent, b%tangent), worse(a%slip, b%slip), a%failures + b%failures, &
+            a%backward + b%backward)
     end function merge_deviations
 
     pure function maxval_of(x) result(worst)

@@ -48,6 +48,10 @@ contains
         call no_more('batch from scalar, tangent, by the stiffness', tangent_bar, batch%tangent)
         call none('points that failed, scalar and batch', scalar%failures + batch%failures)
         call none('negative slip increments, scalar and batch', scalar%backward + batch%backward)
+        write (line, &
+            '(a, es8.1)') 'no bar: slip of batch from scalar, by the displacement since the ' &
+            // 'start', batch%slip
+        call costs%say(trim(line))
         if (costs%disturbed() > 0) then
             write (line, '(i0, a)') costs%disturbed(), &
                 ' rows have a median beyond 1.25 times the ' // 'lowest: the machine was not idle'
