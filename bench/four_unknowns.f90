@@ -2,8 +2,8 @@
 !> four unknowns (u_e, dgamma, mu, R) of its equations 17 to 20, with LAPACK's dgesv. It shows what
 !> the reduction to one equation buys.
 !>
-!> The elastic displacement is its length: sliding is along the trial traction. A start and clipped
-!> steps are all that is added; without them it does not converge.
+!> The elastic displacement is its length: sliding is along the trial traction. A start away from
+!> R = 0 and clipped steps are all that is added.
 module four_unknowns
     use, intrinsic :: iso_fortran_env, only : dp => real64
     implicit none
