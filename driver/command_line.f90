@@ -8,12 +8,13 @@ module command_line
     public :: command, print_help, print_version, read_command_line
 
     type :: command
-        character(len=:), allocatable :: verb      !! run, point, check, --help or --version
+        character(len=:), allocatable :: verb      !! run, point, sweep, check, --help, --version
         character(len=:), allocatable :: input     !! namelist file
         character(len=:), allocatable :: output    !! directory
         character(len=:), allocatable :: stem      !! of the names of the files that a run writes
         logical :: plot = .true.
         logical :: quiet = .false.
+        integer :: jobs = 0                        !! runs of a sweep at a time; 0: one a core
         character(len=:), allocatable :: problem   !! what is wrong with the command line; or empty
     end type command
 
@@ -30,7 +31,7 @@ contains
         wanted%verb = argument(1)
         i = 2
         select case (wanted%verb)
-        case ('run', 'point', 'check')
+        case ('run', 'point', 'sweep', 'check')
             continue
         case ('--help', '-h', 'help')
             wanted%verb = '--help'
@@ -60,6 +61,9 @@ contains
                 wanted%output = argument(i)
                 i = i + 1
                 if (len(wanted%output) == 0) wanted%problem = '--output needs a directory'
+            case ('--jobs')
+                call take_jobs(wanted, argument(i))
+                i = i + 1
             case default
                 call take_input(wanted, word)
             end select
@@ -85,6 +89,20 @@ contains
             wanted%input = word
         end if
     end subroutine take_input
+
+    subroutine take_jobs(wanted, word)
+        type(command), intent(inout) :: wanted
+        character(len=*), intent(in) :: word
+
+        if (wanted%verb /= 'sweep') then
+            wanted%problem = '--jobs is for sweep'
+        else if (len(word) == 0 .or. len(word) > 4 .or. verify(word, '0123456789') > 0) then
+            wanted%problem = '--jobs needs a whole number from 1 to 9999'
+        else
+            read (word, '(i4)') wanted%jobs
+            if (wanted%jobs == 0) wanted%problem = '--jobs needs a whole number from 1 to 9999'
+        end if
+    end subroutine take_jobs
 
     function argument(i) result(word)
         integer, intent(in) :: i
@@ -118,6 +136,7 @@ contains
         write (merge(error_unit, output_unit, to_error), '(a)') &
             'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
+            '       stickslip sweep INPUT.nml [--output DIR] [--no-plot] [--quiet] [--jobs N]', &
             '       stickslip check INPUT.nml', &
             '       stickslip --help | --version', &
             '', &
@@ -125,11 +144,15 @@ contains
             '       STEM.png with its script STEM.gp to STEM_out, and a summary on screen', &
             'point  takes one contact point along a path of prescribed displacements or', &
             '       tractions; writes STEM.csv and STEM.png with its script STEM.gp', &
+            'sweep  runs INPUT.nml with every combination of the values in its group &sweep;', &
+            '       writes STEM_sweep.csv, one row a combination, and STEM_sweep.png with its', &
+            '       script; what was interrupted continues where it stopped', &
             'check  reads and validates INPUT.nml, and runs nothing', &
             '', &
             '--output DIR  where to write', &
             '--no-plot     draw no picture', &
             '--quiet       no summary and no progress bar', &
+            '--jobs N      runs of a sweep at a time (as many as there are cores)', &
             '', &
             'Groups and keys of INPUT.nml, (default), [unit] of force F, length L, time T:', &
             '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
@@ -147,6 +170,7 @@ contains
             '             (''displacement'' or ''traction''), target_n, target_t1, target_t2', &
             '             [L] or [F/L^2]: lists, the i-th values belong to segment i;', &
             '             or file = CSV with time and u_ or t_ columns, substeps (1)', &
+            '  &sweep     key (''group%key''), values: list; key2, values2: a second key', &
             '', &
             'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'
     end subroutine print_help

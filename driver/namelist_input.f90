@@ -10,8 +10,8 @@ module namelist_input
     implicit none
     private
 
-    public :: above, any_number, at_least, between, fault, namelist_file, read_namelist_file, &
-        read_number, rule
+    public :: above, any_number, at_least, between, fault, lower, namelist_file, &
+        read_namelist_file, read_number, rule
 
     !> The numbers that a key may take.
     type :: rule
@@ -55,6 +55,7 @@ module namelist_input
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
+        procedure :: substitute, remove, listing
     end type namelist_file
 
 contains
@@ -784,6 +785,74 @@ contains
             end do
         end do
     end function describe_faults
+
+    !> Gives a key one value in place of all that it has: the i-th value of another key. A key or a
+    !> group that the file does not have is added. Faults of it count for the line of the other key.
+    subroutine substitute(self, group, key, from_group, from_key, i)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=*), intent(in) :: from_group, from_key   !! given, with `i` values or more
+        integer, intent(in) :: i                               !! >= 1
+        type(value_token), allocatable :: tokens(:)
+        type(namelist_entry) :: entry
+        type(group_seen) :: seen
+        logical :: there
+        integer :: j
+
+        call gather(self, from_group, from_key, tokens)
+        entry%group = group
+        entry%key = key
+        entry%values = [tokens(i)]
+        do j = 1, size(self%entries)
+            if (self%entries(j)%group /= from_group .or. self%entries(j)%key /= from_key) cycle
+            entry%line = self%entries(j)%line
+        end do
+        call self%remove(group, key)
+        self%entries = [self%entries, entry]
+        there = .false.
+        do j = 1, size(self%groups)
+            there = there .or. self%groups(j)%name == group
+        end do
+        if (there) return
+        seen%name = group
+        seen%line = entry%line
+        self%groups = [self%groups, seen]
+    end subroutine substitute
+
+    !> Forgets all assignments to a key.
+    subroutine remove(self, group, key)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        type(namelist_entry), allocatable :: kept(:)
+        integer :: i
+
+        allocate (kept(0))
+        do i = 1, size(self%entries)
+            if (self%entries(i)%group == group .and. self%entries(i)%key == key) cycle
+            kept = [kept, self%entries(i)]
+        end do
+        call move_alloc(kept, self%entries)
+    end subroutine remove
+
+    !> What the file says, without its comments and its layout: one line an assignment.
+    pure function listing(self) result(text)
+        class(namelist_file), intent(in) :: self
+        character(len=:), allocatable :: text
+        integer :: i, j
+
+        text = ''
+        do i = 1, size(self%entries)
+            associate (entry => self%entries(i))
+                text = text // '&' // entry%group // ' ' // entry%key
+                if (entry%first > 0) text = text // '(' // whole(entry%first) // ')'
+                text = text // ' ='
+                do j = 1, size(entry%values)
+                    text = text // ' ' // shown(entry%values(j))
+                end do
+                text = text // new_line('a')
+            end associate
+        end do
+    end function listing
 
     !> Notes a fault in a line; line 0 is the file as a whole.
     subroutine add_fault(self, line, text)

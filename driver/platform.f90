@@ -5,8 +5,8 @@ module platform
     implicit none
     private
 
-    public :: exit_program, have_command, is_terminal, make_directory, run_in_directory, seconds, &
-        shell_word
+    public :: cores, exit_program, have_command, is_terminal, make_directory, rename_file, &
+        run_in_directory, seconds, shell_word
 
     interface
         function c_isatty(descriptor) result(answer) bind(C, name='isatty')
@@ -31,6 +31,13 @@ module platform
             integer(c_int), value, intent(in) :: mode
             integer(c_int) :: status
         end function c_access
+
+        function c_rename(from, to) result(status) bind(C, name='rename')
+            import :: c_char, c_int
+            implicit none
+            character(kind=c_char), intent(in) :: from(*), to(*)
+            integer(c_int) :: status
+        end function c_rename
 
         subroutine c_exit(status) bind(C, name='exit')
             import :: c_int
@@ -74,6 +81,14 @@ contains
         made = c_access(path // '/.' // c_null_char, write_and_search) == 0
     end function make_directory
 
+    !> Gives a file another name; a file that had that name is replaced in one go.
+    function rename_file(from, to) result(renamed)
+        character(len=*), intent(in) :: from, to
+        logical :: renamed
+
+        renamed = c_rename(from // c_null_char, to // c_null_char) == 0
+    end function rename_file
+
     !> Is there a program of this name?
     function have_command(name) result(found)
         character(len=*), intent(in) :: name
@@ -84,6 +99,16 @@ contains
             cmdstat=started)
         found = started == 0 .and. status == 0
     end function have_command
+
+    !> Processors that this process may use; at most 255 are told, the largest exit status.
+    function cores() result(n)
+        integer :: n
+        integer :: started
+
+        call execute_command_line('{ n=$(nproc || getconf _NPROCESSORS_ONLN); } 2>/dev/null; ' &
+            // '[ "${n:-1}" -le 255 ] || n=255; exit "${n:-1}"', exitstat=n, cmdstat=started)
+        if (started /= 0 .or. n < 1) n = 1
+    end function cores
 
     !> Runs a shell command inside a directory; its output is thrown away.
     function run_in_directory(directory, command) result(succeeded)

@@ -16,6 +16,7 @@ module run_settings
     contains
         procedure :: piece
         procedure :: position
+        procedure :: divide
     end type programme
 
     type :: settings
@@ -58,6 +59,20 @@ contains
         i = self%piece(t)
         x = x + self%velocity(i) * (t - self%start(i))
     end function position
+
+    !> Starts a new piece at time `t` that goes on as before, so that events are booked by
+    !> themselves from there on.
+    pure subroutine divide(self, t)
+        class(programme), intent(inout) :: self
+        real(dp), intent(in) :: t   !! > 0 [T]
+        integer :: i
+
+        i = self%piece(t)
+        if (.not. self%start(i) < t) return
+        self%start = [self%start(:i), t, self%start(i + 1:)]
+        self%velocity = [self%velocity(:i), self%velocity(i:)]
+        self%normal = [self%normal(:i), self%normal(i:)]
+    end subroutine divide
 
     !> Takes the settings from a file; every fault is left in `file%faults`.
     subroutine read_settings(file, run)

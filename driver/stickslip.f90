@@ -5,6 +5,7 @@ program stickslip
     use platform, only : exit_program
     use point_study, only : check_point, is_point_input, run_point
     use run_settings, only : settings
+    use sweep, only : sweep_input
     use study, only : check_input, exit_bad_input, exit_done, run_input
     implicit none
     type(command) :: wanted
@@ -24,6 +25,8 @@ program stickslip
         call run_input(wanted, exit_status)
     case ('point')
         call run_point(wanted, exit_status)
+    case ('sweep')
+        call sweep_input(wanted, exit_status)
     case ('check')
         if (is_point_input(wanted%input)) then
             call check_point(wanted, exit_status)

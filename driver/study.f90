@@ -9,6 +9,7 @@ module study
     use run_settings, only : read_settings, settings
     use simulation, only : outcome, simulate
     use summary, only : print_summary
+    use sweep_settings, only : read_sweep, sweep_plan
     implicit none
     private
 
@@ -24,7 +25,9 @@ contains
         type(settings), intent(out) :: run
         integer, intent(out) :: exit_status
         type(namelist_file) :: file
+        type(sweep_plan) :: plan
         character(len=:), allocatable :: problem
+        logical :: swept
 
         exit_status = exit_bad_input
         call read_namelist_file(wanted%input, file, problem)
@@ -32,14 +35,24 @@ contains
             write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': ', problem
             return
         end if
-        call read_settings(file, run)
+        swept = .false.
+        if (wanted%verb == 'check') swept = file%has_group('sweep')
+        if (swept) then
+            call read_sweep(file, plan)
+        else
+            call read_settings(file, run)
+        end if
         if (size(file%faults) > 0) then
             write (error_unit, '(a)', advance='no') file%describe_faults()
             return
         end if
         exit_status = exit_done
-        if (wanted%verb == 'check') write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', &
-            run%n_steps, ' steps'
+        if (swept) then
+            write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', size(plan%runs), &
+                ' combinations'
+        else if (wanted%verb == 'check') then
+            write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', run%n_steps, ' steps'
+        end if
     end subroutine check_input
 
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.

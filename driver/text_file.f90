@@ -8,7 +8,8 @@ module text_file
 
     public :: output_file
 
-    !> A file that is written line by line. After the first failure nothing more is written.
+    !> A file that is written line by line. After the first failure nothing more is written; what is
+    !> written to a file that was never created is dropped.
     type :: output_file
         private
         type(c_ptr) :: stream = c_null_ptr
@@ -65,7 +66,7 @@ contains
         character(len=*), intent(in) :: line
         integer(c_size_t) :: length
 
-        if (self%failed) return
+        if (self%failed .or. .not. c_associated(self%stream)) return
         length = len(line, c_size_t) + 1_c_size_t
         self%failed = c_fwrite(line // new_line('a'), 1_c_size_t, length, self%stream) /= length
     end subroutine write_line
@@ -74,7 +75,8 @@ contains
     subroutine flush_lines(self)
         class(output_file), intent(inout) :: self
 
-        if (.not. self%failed) self%failed = c_fflush(self%stream) /= 0
+        if (self%failed .or. .not. c_associated(self%stream)) return
+        self%failed = c_fflush(self%stream) /= 0
     end subroutine flush_lines
 
     subroutine finish(self)

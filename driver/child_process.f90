@@ -1,0 +1,150 @@
+!> Child processes that compute something and tell it to their parent, as a line of text through a
+!> pipe. Processes and not threads: gfortran keeps lengths of character results in static memory, so
+!> that text made by two threads at once gets mixed up; and a child that crashes harms no other.
+module child_process
+    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t
+    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+    implicit none
+    private
+
+    public :: child, wait_for_one
+
+    type :: child
+        private
+        integer(c_int) :: id = 0          !! of the process; 0: none is running
+        integer(c_int) :: pipe_end = -1   !! the parent reads from it, the child writes to it
+    contains
+        procedure :: start, running, tell_and_end
+    end type child
+
+    interface
+        function c_fork() result(id) bind(C, name='fork')
+            import :: c_int
+            implicit none
+            integer(c_int) :: id
+        end function c_fork
+
+        function c_wait(status) result(id) bind(C, name='wait')
+            import :: c_int
+            implicit none
+            integer(c_int), intent(out) :: status
+            integer(c_int) :: id
+        end function c_wait
+
+        function c_pipe(ends) result(status) bind(C, name='pipe')
+            import :: c_int
+            implicit none
+            integer(c_int), intent(out) :: ends(2)
+            integer(c_int) :: status
+        end function c_pipe
+
+        function c_close(descriptor) result(status) bind(C, name='close')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: descriptor
+            integer(c_int) :: status
+        end function c_close
+
+        function c_read(descriptor, buffer, length) result(got) bind(C, name='read')
+            import :: c_char, c_int, c_size_t
+            implicit none
+            integer(c_int), value, intent(in) :: descriptor
+            character(kind=c_char), intent(inout) :: buffer(*)
+            integer(c_size_t), value, intent(in) :: length
+            integer(c_size_t) :: got   ! ssize_t, as wide and signed here
+        end function c_read
+
+        function c_write(descriptor, text, length) result(written) bind(C, name='write')
+            import :: c_char, c_int, c_size_t
+            implicit none
+            integer(c_int), value, intent(in) :: descriptor
+            character(kind=c_char), intent(in) :: text(*)
+            integer(c_size_t), value, intent(in) :: length
+            integer(c_size_t) :: written
+        end function c_write
+
+        !> Ends without touching the buffers of files, which are the parent's too.
+        subroutine c_end(status) bind(C, name='_exit')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: status
+        end subroutine c_end
+    end interface
+
+contains
+
+    !> Splits the process in two; `inside` tells which of them goes on here.
+    subroutine start(self, inside, started)
+        class(child), intent(inout) :: self
+        logical, intent(out) :: inside    !! this is the child
+        logical, intent(out) :: started   !! false: the system has no room for another process
+        integer(c_int) :: ends(2), ignored
+
+        inside = .false.
+        started = c_pipe(ends) == 0
+        if (.not. started) return
+        flush (output_unit)
+        flush (error_unit)
+        self%id = c_fork()
+        inside = self%id == 0
+        started = self%id >= 0
+        self%pipe_end = ends(merge(2, 1, inside))
+        ignored = c_close(ends(merge(1, 2, inside)))
+        if (started) return
+        self%id = 0
+        ignored = c_close(self%pipe_end)
+    end subroutine start
+
+    elemental function running(self)
+        class(child), intent(in) :: self
+        logical :: running
+
+        running = self%id > 0
+    end function running
+
+    !> The child's last act: hands one line of text to the parent.
+    subroutine tell_and_end(self, text)
+        class(child), intent(in) :: self
+        character(len=*), intent(in) :: text
+        integer(c_size_t) :: written, length
+
+        length = len(text, c_size_t) + 1_c_size_t
+        written = c_write(self%pipe_end, text // new_line('a'), length)
+        call c_end(merge(0_c_int, 1_c_int, written == length))
+    end subroutine tell_and_end
+
+    !> Waits until one of the running children has ended, and takes what it has told.
+    subroutine wait_for_one(children, which, text, sound)
+        type(child), intent(inout) :: children(:)              !! all that there are
+        integer, intent(out) :: which                          !! 0: none was left to wait for
+        character(len=:), allocatable, intent(out) :: text
+        logical, intent(out) :: sound                          !! false: it crashed
+        character(len=4096) :: buffer
+        integer(c_size_t) :: got
+        integer(c_int) :: id, status, ignored
+        integer :: i
+
+        text = ''
+        sound = .false.
+        which = 0
+        id = c_wait(status)
+        if (id < 0) then   ! whoever started this process had endings of children go unreported
+            which = findloc(children%running(), .true., dim=1)
+            status = 0_c_int
+        end if
+        do i = 1, size(children)
+            if (children(i)%running() .and. children(i)%id == id) which = i
+        end do
+        if (which == 0) return
+        do
+            got = c_read(children(which)%pipe_end, buffer, len(buffer, c_size_t))
+            if (got <= 0) exit
+            text = text // buffer(:got)
+        end do
+        ignored = c_close(children(which)%pipe_end)
+        children(which)%id = 0
+        sound = status == 0 .and. index(text, new_line('a')) > 0
+        if (sound) text = text(:len(text) - 1)
+    end subroutine wait_for_one
+
+end module child_process

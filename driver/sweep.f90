@@ -1,0 +1,242 @@
+!> The verb `sweep`: runs the input with every combination of the values of one or two keys, as many
+!> at a time as wanted, and tabulates what each run has come to.
+module sweep
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use child_process, only : child, wait_for_one
+    use command_line, only : command
+    use friction_mod, only : friction_version
+    use namelist_input, only : namelist_file, read_namelist_file
+    use platform, only : cores, make_directory, rename_file
+    use progress_bar, only : progress
+    use recorder, only : csv_recorder
+    use run_settings, only : settings
+    use simulation, only : outcome, simulate
+    use study, only : exit_bad_input, exit_done, exit_failed
+    use sweep_journal, only : journal, text_line
+    use sweep_picture, only : draw_sweep
+    use sweep_settings, only : read_sweep, sweep_plan
+    use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
+    use text_file, only : output_file
+    implicit none
+    private
+
+    public :: sweep_input
+
+contains
+
+    !> Reads, validates, runs what no earlier sweep has left in the journal, and reports.
+    subroutine sweep_input(wanted, exit_status)
+        type(command), intent(in) :: wanted
+        integer, intent(out) :: exit_status
+        type(sweep_plan) :: plan
+        type(journal) :: done
+        type(text_line), allocatable :: rows(:)
+        character(len=:), allocatable :: base, problem
+        integer :: found, failures
+
+        exit_status = exit_bad_input
+        call read_plan(wanted%input, plan, problem)
+        base = wanted%output // '/' // wanted%stem // '_sweep'
+        if (len(problem) == 0) call open_journal(wanted%output, base, plan, done, rows, problem)
+        if (len(problem) > 0) then
+            write (error_unit, '(a)') problem
+            return
+        end if
+
+        found = count_rows(rows)
+        call run_all(plan, wanted%jobs, .not. wanted%quiet, done, rows, problem)
+        if (len(problem) == 0) call write_table(base, plan, rows, problem)
+        if (done%failed()) problem = 'cannot write ' // base // '.journal (disk full?)'
+        call done%finish()
+        failures = count_failures(plan, rows)
+        if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(base, size(rows), &
+            found, failures)
+        exit_status = merge(exit_failed, exit_done, failures > 0 .or. len(problem) > 0)
+        if (failures > 0) write (error_unit, '(3a, i0, a, i0, 3a)') 'stickslip: ', wanted%input, &
+            ': ', failures, ' of ', size(rows), ' combinations failed; why is in ', base, '.csv'
+        if (len(problem) == 0 .and. wanted%plot) call draw_sweep(wanted%output, &
+            wanted%stem // '_sweep', plan%axes, problem)
+        if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
+    end subroutine sweep_input
+
+    !> `problem` is empty, or all faults of the input.
+    subroutine read_plan(name, plan, problem)
+        character(len=*), intent(in) :: name
+        type(sweep_plan), intent(out) :: plan
+        character(len=:), allocatable, intent(out) :: problem
+        type(namelist_file) :: file
+        integer :: i
+
+        call read_namelist_file(name, file, problem)
+        if (len(problem) > 0) then
+            problem = 'stickslip: ' // name // ': ' // problem
+            return
+        end if
+        call read_sweep(file, plan)
+        problem = file%describe_faults()
+        if (len(problem) > 0) problem = problem(:len(problem) - 1)   ! its last newline
+        do i = 1, size(plan%runs)
+            call plan%runs(i)%drive%divide(late_from(plan%runs(i)))
+            plan%runs(i)%interval = huge(plan%runs(i)%interval)   ! no series is kept
+        end do
+    end subroutine read_plan
+
+    !> Finds the combinations whose rows are in the journal of an earlier sweep.
+    subroutine open_journal(directory, base, plan, done, rows, problem)
+        character(len=*), intent(in) :: directory, base
+        type(sweep_plan), intent(in) :: plan
+        type(journal), intent(inout) :: done
+        type(text_line), allocatable, intent(out) :: rows(:)  !! one a combination, empty if not run
+        character(len=:), allocatable, intent(out) :: problem
+        type(text_line), allocatable :: known(:)
+        integer :: i, j
+
+        allocate (rows(size(plan%runs)))
+        if (.not. make_directory(directory)) then
+            problem = "stickslip: cannot write to the directory '" // directory // "'"
+            return
+        end if
+        call done%open(base // '.journal', 'stickslip ' // friction_version // new_line('a') &
+            // plan%input, known, problem)
+        if (len(problem) > 0) problem = 'stickslip: ' // problem
+        do i = 1, size(rows)
+            rows(i)%text = ''
+            do j = 1, size(known)
+                if (index(known(j)%text, point_text(plan%point(i))) == 1) rows(i) = known(j)
+            end do
+        end do
+    end subroutine open_journal
+
+    !> Runs the combinations that have no row, each in a process of its own. A row does not depend
+    !> on what runs beside it. Rows of runs that crashed stay out of the journal: they are tried
+    !> again.
+    subroutine run_all(plan, jobs, show_progress, done, rows, problem)
+        type(sweep_plan), intent(in) :: plan
+        integer, intent(in) :: jobs               !! at a time; 0: as many as there are cores
+        logical, intent(in) :: show_progress
+        type(journal), intent(inout) :: done
+        type(text_line), intent(inout) :: rows(:)
+        character(len=:), allocatable, intent(out) :: problem
+        type(child), allocatable :: children(:)
+        integer, allocatable :: combination(:)    !! that a child runs
+        type(progress) :: bar
+        integer :: i, next
+
+        problem = ''
+        i = jobs
+        if (jobs == 0) i = cores()
+        allocate (children(i), combination(i))
+        next = 1
+        call bar%begin(show_progress)
+        do
+            do i = 1, size(children)
+                if (.not. children(i)%running()) call give_work(i)
+            end do
+            if (.not. any(children%running())) exit
+            call take_result()
+            call bar%show(real(count_rows(rows), dp) / size(rows))
+        end do
+        call bar%clear()
+
+    contains
+
+        subroutine give_work(k)
+            integer, intent(in) :: k
+            logical :: inside, started
+
+            do while (next <= size(rows))
+                if (len(rows(next)%text) == 0) exit
+                next = next + 1
+            end do
+            if (next > size(rows)) return
+            call children(k)%start(inside, started)
+            if (inside) call children(k)%tell_and_end(run_one(plan%runs(next)))
+            if (.not. started) then
+                if (.not. any(children%running())) problem = 'no process can be started'
+                return
+            end if
+            combination(k) = next
+            next = next + 1
+        end subroutine give_work
+
+        subroutine take_result()
+            character(len=:), allocatable :: text
+            logical :: sound
+            integer :: k
+
+            call wait_for_one(children, k, text, sound)
+            if (k == 0) return
+            if (.not. sound) text = failure_text('the run crashed')
+            associate (row => rows(combination(k)))
+                row%text = point_text(plan%point(combination(k))) // text
+                if (sound) call done%append(row%text)
+            end associate
+        end subroutine take_result
+
+    end subroutine run_all
+
+    !> What a run has come to, as text.
+    function run_one(run) result(text)
+        type(settings), intent(in) :: run
+        character(len=:), allocatable :: text
+        type(csv_recorder) :: nowhere   ! never started: keeps nothing
+        type(outcome) :: result
+
+        call simulate(run, nowhere, .false., result)
+        text = result_text(run, result)
+    end function run_one
+
+    !> The table replaces an older one whole or not at all.
+    subroutine write_table(base, plan, rows, problem)
+        character(len=*), intent(in) :: base
+        type(sweep_plan), intent(in) :: plan
+        type(text_line), intent(in) :: rows(:)
+        character(len=:), allocatable, intent(out) :: problem
+        type(output_file) :: table
+        integer :: i
+
+        call table%create(base // '.csv.new')
+        call table%write_line(table_header(plan%axes))
+        do i = 1, size(rows)
+            call table%write_line(rows(i)%text)
+        end do
+        call table%finish()
+        problem = ''
+        if (.not. table%failed) then
+            if (rename_file(base // '.csv.new', base // '.csv')) return
+        end if
+        problem = 'cannot write ' // base // '.csv (disk full?)'
+    end subroutine write_table
+
+    pure function count_rows(rows) result(n)
+        type(text_line), intent(in) :: rows(:)
+        integer :: n, i
+
+        n = 0
+        do i = 1, size(rows)
+            if (len(rows(i)%text) > 0) n = n + 1
+        end do
+    end function count_rows
+
+    pure function count_failures(plan, rows) result(n)
+        type(sweep_plan), intent(in) :: plan
+        type(text_line), intent(in) :: rows(:)
+        integer :: n, i
+
+        n = 0
+        do i = 1, size(rows)
+            if (index(rows(i)%text, point_text(plan%point(i)) // 'failed,') == 1) n = n + 1
+        end do
+    end function count_failures
+
+    subroutine print_summary(base, combinations, found, failures)
+        character(len=*), intent(in) :: base
+        integer, intent(in) :: combinations, found, failures
+
+        write (output_unit, '(a, 3(i0, a))') 'combinations       ', combinations, ': ', &
+            combinations - found, ' run now, ', found, ' taken from the journal'
+        write (output_unit, '(a, i0)') 'failed             ', failures
+        write (output_unit, '(3a)') 'table              ', base, '.csv'
+    end subroutine print_summary
+
+end module sweep

@@ -1,0 +1,135 @@
+!> The journal of a sweep: each row as soon as it is finished, so that an interrupted sweep can go
+!> on. It starts with the input that the rows belong to. Only whole lines count: the last one may be
+!> torn.
+module sweep_journal
+    use platform, only : rename_file
+    use text_file, only : output_file
+    implicit none
+    private
+
+    public :: journal, text_line
+
+    type :: text_line
+        character(len=:), allocatable :: text
+    end type text_line
+
+    type :: journal
+        private
+        type(output_file) :: file
+    contains
+        procedure :: open, append, failed, finish
+    end type journal
+
+    character(len=*), parameter :: mark = '# '   !! starts a line of the input
+
+contains
+
+    !> Reads the rows that are there and makes ready for more. `problem` says why that cannot be.
+    subroutine open(self, name, input, rows, problem)
+        class(journal), intent(inout) :: self
+        character(len=*), intent(in) :: name
+        character(len=*), intent(in) :: input   !! what the rows depend on; lines ended by newlines
+        type(text_line), allocatable, intent(out) :: rows(:)
+        character(len=:), allocatable, intent(out) :: problem
+        character(len=:), allocatable :: old_input
+        integer :: i
+
+        call read_journal(name, old_input, rows)
+        problem = ''
+        if (len(old_input) > 0 .and. old_input /= input) then
+            problem = name // ' holds results of another input: delete it, or write elsewhere ' &
+                // 'with --output'
+            return
+        end if
+        call self%file%create(name // '.new')
+        call write_marked(self%file, input)
+        do i = 1, size(rows)
+            call self%file%write_line(rows(i)%text)
+        end do
+        call self%file%flush_lines()
+        if (self%file%failed) then
+            problem = 'cannot write ' // name // '.new'
+        else if (.not. rename_file(name // '.new', name)) then
+            problem = 'cannot write ' // name
+        end if
+    end subroutine open
+
+    !> Both are empty where there is no journal, or none with a whole line.
+    subroutine read_journal(name, input, rows)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable, intent(out) :: input
+        type(text_line), allocatable, intent(out) :: rows(:)
+        character(len=:), allocatable :: text
+        type(text_line) :: line
+        integer :: start, length
+
+        input = ''
+        allocate (rows(0))
+        call read_file(name, text)
+        start = 1
+        do
+            length = index(text(start:), new_line('a')) - 1
+            if (length < 0) exit
+            line%text = text(start:start + length - 1)
+            start = start + length + 1
+            if (index(line%text, mark) == 1) then
+                input = input // line%text(len(mark) + 1:) // new_line('a')
+            else
+                rows = [rows, line]
+            end if
+        end do
+    end subroutine read_journal
+
+    subroutine read_file(name, text)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable, intent(out) :: text   !! empty if there is no such file
+        integer :: unit, status, length
+
+        length = 0
+        open (newunit=unit, file=name, status='old', action='read', access='stream', &
+            form='unformatted', iostat=status)
+        if (status == 0) inquire (unit=unit, size=length)
+        allocate (character(len=max(0, length)) :: text)
+        if (status /= 0) return
+        read (unit, iostat=status) text
+        if (status /= 0) text = ''
+        close (unit)
+    end subroutine read_file
+
+    subroutine write_marked(file, input)
+        type(output_file), intent(inout) :: file
+        character(len=*), intent(in) :: input
+        integer :: start, length
+
+        start = 1
+        do while (start <= len(input))
+            length = index(input(start:), new_line('a')) - 1
+            call file%write_line(mark // input(start:start + length - 1))
+            start = start + length + 1
+        end do
+    end subroutine write_marked
+
+    !> Adds a row and hands it to the operating system at once.
+    subroutine append(self, row)
+        class(journal), intent(inout) :: self
+        character(len=*), intent(in) :: row
+
+        call self%file%write_line(row)
+        call self%file%flush_lines()
+    end subroutine append
+
+    !> Has a row been lost on its way to the disk?
+    pure function failed(self) result(lost)
+        class(journal), intent(in) :: self
+        logical :: lost
+
+        lost = self%file%failed
+    end function failed
+
+    subroutine finish(self)
+        class(journal), intent(inout) :: self
+
+        call self%file%finish()
+    end subroutine finish
+
+end module sweep_journal

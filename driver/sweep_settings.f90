@@ -1,0 +1,175 @@
+!> What a sweep is told to do: the group &sweep, and the settings of every combination of its
+!> values.
+module sweep_settings
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use namelist_input, only : any_number, fault, lower, namelist_file
+    use run_settings, only : read_settings, settings
+    implicit none
+    private
+
+    public :: read_sweep, sweep_axis, sweep_plan
+
+    integer, parameter :: most_combinations = 10000
+
+    !> A key of the input, and the values that it takes one after the other.
+    type :: sweep_axis
+        character(len=:), allocatable :: name         !! group%key
+        character(len=:), allocatable :: group, key
+        character(len=:), allocatable :: source       !! the key of &sweep with the values
+        real(dp), allocatable :: values(:)
+    end type sweep_axis
+
+    !> All combinations of the values of one or two keys. The values of the last key change fastest.
+    type :: sweep_plan
+        type(sweep_axis), allocatable :: axes(:)      !! one or two
+        type(settings), allocatable :: runs(:)        !! one a combination
+        character(len=:), allocatable :: input        !! what all combinations have in common
+    contains
+        procedure :: place, point
+    end type sweep_plan
+
+contains
+
+    !> Which value of each key belongs to a combination?
+    pure function place(self, combination) result(places)
+        class(sweep_plan), intent(in) :: self
+        integer, intent(in) :: combination            !! from 1
+        integer :: places(size(self%axes))
+        integer :: rest, i
+
+        rest = combination - 1
+        do i = size(self%axes), 1, -1
+            places(i) = 1 + mod(rest, size(self%axes(i)%values))
+            rest = rest / size(self%axes(i)%values)
+        end do
+    end function place
+
+    !> The values of the keys in a combination.
+    pure function point(self, combination) result(values)
+        class(sweep_plan), intent(in) :: self
+        integer, intent(in) :: combination            !! from 1
+        real(dp) :: values(size(self%axes))
+        integer :: places(size(self%axes)), i
+
+        places = self%place(combination)
+        values = [(self%axes(i)%values(places(i)), i = 1, size(self%axes))]
+    end function point
+
+    !> Takes the group &sweep from a file, and the settings of each combination by the rules of any
+    !> run; every fault of every combination is left in `file%faults`.
+    subroutine read_sweep(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(sweep_plan), intent(out) :: plan
+        type(sweep_axis) :: first, second
+        integer :: faults_before
+
+        faults_before = size(file%faults)
+        allocate (plan%axes(0), plan%runs(0))
+        plan%input = ''
+        if (.not. file%has_group('sweep')) call file%add_fault(0, 'group &sweep is missing')
+        call read_axis(file, 'key', 'values', first)
+        plan%axes = [plan%axes, first]
+        if (file%given('sweep', 'key2') .or. file%given('sweep', 'values2')) then
+            call read_axis(file, 'key2', 'values2', second)
+            plan%axes = [plan%axes, second]
+        end if
+        if (size(file%faults) == faults_before) call check_axes(file, plan%axes)
+        if (size(file%faults) > faults_before) return
+        call read_combinations(file, plan)
+        call list_common_input(file, plan)
+    end subroutine read_sweep
+
+    subroutine read_axis(file, key_name, values_name, axis)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: key_name, values_name   !! keys of &sweep
+        type(sweep_axis), intent(out) :: axis
+        integer :: percent
+
+        call file%require('sweep', key_name)
+        call file%require('sweep', values_name)
+        call file%get_text('sweep', key_name, axis%name)
+        call file%get_reals('sweep', values_name, axis%values, any_number())
+        axis%source = values_name
+        axis%name = lower(axis%name)
+        percent = index(axis%name, '%')
+        axis%group = axis%name(:max(0, percent - 1))
+        axis%key = axis%name(percent + 1:)
+        if (len(axis%name) == 0) return
+        if (len(axis%group) == 0 .or. len(axis%key) == 0 .or. verify(axis%name, &
+            'abcdefghijklmnopqrstuvwxyz0123456789_%') > 0) then
+            call file%reject('sweep', key_name, "must be 'group%key'")
+        else if (axis%group == 'sweep') then
+            call file%reject('sweep', key_name, 'must be a key of a run')
+        end if
+    end subroutine read_axis
+
+    subroutine check_axes(file, axes)
+        type(namelist_file), intent(inout) :: file
+        type(sweep_axis), intent(in) :: axes(:)
+        character(len=80) :: text
+        integer(int64) :: combinations
+        integer :: i
+
+        combinations = product([(size(axes(i)%values, kind=int64), i = 1, size(axes))])
+        write (text, '(a, i0, a, i0)') 'makes ', combinations, &
+            ' combinations; the most are ', most_combinations
+        if (combinations > most_combinations) call file%reject('sweep', axes(size(axes))%source, &
+            trim(text))
+        if (size(axes) == 1) return
+        if (axes(1)%name == axes(2)%name) call file%reject('sweep', 'key2', 'must differ from key')
+    end subroutine check_axes
+
+    !> A value replaces all that the input gives for its key. Each combination is read as if it were
+    !> the only one; faults that it shares with an earlier one are not repeated.
+    subroutine read_combinations(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(sweep_plan), intent(inout) :: plan
+        type(fault), allocatable :: faults(:)
+        integer :: places(size(plan%axes)), i, j
+
+        faults = file%faults
+        deallocate (plan%runs)
+        allocate (plan%runs(product([(size(plan%axes(j)%values), j = 1, size(plan%axes))])))
+        do i = 1, size(plan%runs)
+            places = plan%place(i)
+            file%faults = [fault ::]
+            do j = 1, size(plan%axes)
+                associate (axis => plan%axes(j))
+                    call file%substitute(axis%group, axis%key, 'sweep', axis%source, places(j))
+                end associate
+            end do
+            call read_settings(file, plan%runs(i))
+            call add_new(faults, file%faults)
+        end do
+        call move_alloc(faults, file%faults)
+    end subroutine read_combinations
+
+    subroutine add_new(faults, more)
+        type(fault), allocatable, intent(inout) :: faults(:)
+        type(fault), intent(in) :: more(:)
+        integer :: i, j
+        logical :: known
+
+        do i = 1, size(more)
+            known = .false.
+            do j = 1, size(faults)
+                known = known .or. (faults(j)%line == more(i)%line .and. faults(j)%text &
+                    == more(i)%text)
+            end do
+            if (.not. known) faults = [faults, more(i)]
+        end do
+    end subroutine add_new
+
+    subroutine list_common_input(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(sweep_plan), intent(inout) :: plan
+        integer :: i
+
+        do i = 1, size(plan%axes)
+            call file%remove(plan%axes(i)%group, plan%axes(i)%key)
+            call file%remove('sweep', plan%axes(i)%source)
+        end do
+        plan%input = file%listing()
+    end subroutine list_common_input
+
+end module sweep_settings
