@@ -140,6 +140,26 @@ class Picture(Sweep):
             self.assertTrue((out / 'case_sweep.gp').exists())
 
 
+    def test_each_cell_of_the_map_lies_at_the_values_of_its_row(self):
+        if shutil.which('gnuplot') is None:
+            self.skipTest('gnuplot is not installed')
+        self.run_text(namelist({**TWO_KEYS, ('time', 't_end'): '5', ('slider', 'damping'): '0.5',
+                                ('sweep', 'values'): '0.5, 1, 2000'}), verb='sweep')
+        script = (self.folder / 'case_out/case_sweep.gp').read_text()
+        places = re.search(r'using (\(regime\("steady"\).*?\):\(up\(0\)\))', script)[1]
+        before = script[:script.index('\nplot') + 1].replace('set multiplot', '#')
+        (self.folder / 'case_out/cells.gp').write_text(
+            before + f'set table "cells"\nplot file using {places}\n')
+        subprocess.run(['gnuplot', 'cells.gp'], cwd=self.folder / 'case_out', check=True, capture_output=True)
+        cells = {tuple(map(int, line.split()[:2]))
+                 for line in (self.folder / 'case_out/cells').read_text().splitlines()
+                 if line.split() and line.split()[-1] == 'i'}
+        rows = self.rows('case_out/case_sweep.csv')
+        expected = {divmod(k, 3) for k, row in enumerate(rows) if row['regime'] == 'steady'}
+        self.assertTrue(0 < len(expected) < 9, expected)
+        self.assertEqual(cells, expected)
+
+
 class BadInput(Sweep):
     def refused(self, text, *said):
         for verb in ('check', 'sweep'):
