@@ -105,6 +105,7 @@ contains
         integer :: n
         integer :: started
 
+        n = 1   ! execute_command_line reads it too
         call execute_command_line('{ n=$(nproc || getconf _NPROCESSORS_ONLN); } 2>/dev/null; ' &
             // '[ "${n:-1}" -le 255 ] || n=255; exit "${n:-1}"', exitstat=n, cmdstat=started)
         if (started /= 0 .or. n < 1) n = 1
