@@ -1,7 +1,8 @@
 !> What a run is told to do: the groups and keys of the input file, with their defaults and rules.
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_update, law_subloading, statev_size
+    use friction_mod, only : friction_message, friction_update, law_subloading, &
+        scheme_backward_euler, scheme_exact_rate, statev_size
     use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
     implicit none
     private
@@ -110,9 +111,9 @@ contains
         type(namelist_file), intent(inout) :: file
         real(dp), allocatable, intent(out) :: props(:)
         character(len=*), parameter :: group = 'friction'
-        character(len=:), allocatable :: law
+        character(len=:), allocatable :: law, scheme
         real(dp) :: alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0
-        integer :: faults_before
+        integer :: faults_before, number
 
         faults_before = size(file%faults)
         call file%get_choice(group, 'law', law, ['subloading'], default='subloading')
@@ -124,7 +125,12 @@ contains
         call file%get_real(group, 'xi', xi, at_least(0.0_dp))
         call file%get_real(group, 'm', m, above(0.0_dp))
         call file%get_real(group, 'mu_0', mu_0, at_least(0.0_dp), default=mu_s)
-        props = [real(law_subloading, dp), alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0]
+        call file%get_choice(group, 'scheme', scheme, ['backward_euler', 'exact_rate    '], &
+            default='backward_euler')
+        number = scheme_backward_euler
+        if (scheme == 'exact_rate') number = scheme_exact_rate
+        props = [real(law_subloading, dp), alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0, &
+            real(number, dp)]
         if (size(file%faults) > faults_before) return
         if (mu_s < mu_k) call file%reject(group, 'mu_s', 'must be >= mu_k')
         if (mu_0 < mu_k .or. mu_0 > mu_s) call file%reject(group, 'mu_0', &

@@ -35,6 +35,8 @@ module friction_law
         procedure(slide_interface), deferred :: slide
         procedure :: weakening => never_weakens
         procedure :: solve => not_solved
+        procedure :: follows_path => ends_only
+        procedure :: start_rate => no_start_rate
     end type law
 
     abstract interface
@@ -120,5 +122,26 @@ contains
 
         solved = .false.
     end subroutine not_solved
+
+    !> Does the law follow the path within an increment? Then an increment that unloads before it
+    !> loads again slides from the least share of the strength on its way: `r` at the start stands
+    !> for that share, and the strength is proportional to it and to the pressure.
+    pure function ends_only(self) result(follows)
+        class(law), intent(in) :: self
+        logical :: follows
+
+        follows = .false.
+    end function ends_only
+
+    !> d(resistance)/d(r at the start of sliding), for a law that follows the path.
+    pure function no_start_rate(self, pressure, start, state) result(rate)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: pressure           !! contact pressure, > 0 [F/L^2]
+        type(law_state), intent(in) :: start       !! state at the start of sliding
+        type(law_state), intent(in) :: state       !! state after it
+        real(wp) :: rate                           !! [F/L^2]
+
+        rate = 0.0_wp
+    end function no_start_rate
 
 end module friction_law

@@ -13,6 +13,7 @@ module friction_mod
     use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
         friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back
+    use friction_subloading_exact_law, only : subloading_exact_law
     use friction_subloading_law, only : read_subloading_law, subloading_law
     implicit none
     private
@@ -29,8 +30,13 @@ module friction_mod
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
 
+    !> Time integration of the subloading law: values of props(10).
+    integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
+    integer, parameter, public :: scheme_exact_rate = 1       !! exact for a constant slip rate
+
     !> Material constants: places in `props` that all laws share.
     integer, parameter :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3, first_own_prop = 4
+    integer, parameter :: prop_scheme = 10   !! of the subloading law; may be left out
 
     !> Places in `statev`.
     integer, parameter, public :: statev_size = 8          !! least size
@@ -245,6 +251,7 @@ contains
         real(wp), intent(inout) :: traction(3), tangent(3, 3)
         integer, intent(out) :: status
         type(subloading_law) :: subloading
+        integer :: scheme
         integer(int64) :: seen
 
         status = friction_bad_size
@@ -265,8 +272,18 @@ contains
             call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
                 subloading, status)
             if (status < 0) return
-            call update_point(subloading, props, motion, n_tangential, statev, traction, tangent, &
-                status)
+            scheme = scheme_backward_euler
+            if (nprops >= prop_scheme) scheme = whole_number(props(prop_scheme))
+            select case (scheme)
+            case (scheme_backward_euler)
+                call update_point(subloading, props, motion, n_tangential, statev, traction, &
+                    tangent, status)
+            case (scheme_exact_rate)
+                call update_point(subloading_exact_law(subloading_law=subloading), props, motion, &
+                    n_tangential, statev, traction, tangent, status)
+            case default
+                status = friction_bad_property
+            end select
         case default
             status = friction_bad_law
         end select

@@ -177,9 +177,11 @@ class BadInput(Program):
     def test_wrong_types(self):
         self.refused(namelist({('slider', 'mass'): "'heavy'", ('time', 'dt'): 'fast',
                                ('friction', 'law'): 'subloading', ('output', 'interval'): '1.5',
-                               ('time', 'max_iterations'): '1e30', ('slider', 'area'): '1, 2'}),
+                               ('time', 'max_iterations'): '1e30', ('slider', 'area'): '1, 2',
+                               ('friction', 'scheme'): "'trapezoidal'"}),
                      "&slider mass = 'heavy': must be a number", '&time dt = fast: must be a number',
                      '&friction law = subloading: must be text in quotes',
+                     "&friction scheme = 'trapezoidal': must be one of 'backward_euler', 'exact_rate'",
                      '&output interval = 1.5: must be a whole number',
                      '&time max_iterations = 1e30', '&slider area: takes one value, not 2')
 
@@ -313,6 +315,23 @@ class ShippedInputs(Program):
             self.assertLess(event['duration'], 0.1 * periods[1])
             self.assertGreater(event['stress_drop'], 0.5 * 0.4 * 0.01)
             self.assertGreater(event['peak_velocity'], 10.0)
+
+    def peak_spring_force(self, scheme, dt):
+        """Of the first loading, before the first drop; from a parabola through the three highest rows."""
+        text = namelist({('friction', 'scheme'): f"'{scheme}'", ('time', 't_end'): '4.2',
+                         ('friction', 'm'): '20', ('time', 'dt'): str(dt)})
+        self.assertEqual(self.run_text(text, '--no-plot').returncode, 0)
+        force = [float(row['spring_force']) for row in self.rows('case_out/case.csv')]
+        i = force.index(max(force))
+        below, peak, above = force[i - 1:i + 2]
+        return peak + (above - below)**2 / (8 * (2 * peak - above - below))
+
+    def test_exact_rate_makes_the_peak_force_second_order_accurate(self):
+        limit = self.peak_spring_force('exact_rate', 1.25e-4)
+        for scheme, least, most in ('exact_rate', 1.9, 2.5), ('backward_euler', 0.8, 1.2):
+            coarse, fine = (abs(self.peak_spring_force(scheme, dt) - limit) for dt in (4e-3, 1e-3))
+            order = math.log2(coarse / fine) / 2
+            self.assertTrue(least < order < most, f'{scheme}: order {order}')
 
     def test_slow_steady_settles_at_the_closed_form(self):
         self.shipped('slow_steady')

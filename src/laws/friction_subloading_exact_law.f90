@@ -1,0 +1,213 @@
+!> The subloading law integrated exactly for a constant slip rate in the increment (docs/theory.md,
+!> section 8), hence second order where the slip rate varies:
+!>
+!>     mu(s) = mu_k + (mu_n - mu_k) exp(-x) + xi dt (mu_s - mu_k) phi(x),   x = kappa s + xi dt
+!>     R(s)  : E1(-ln R) = E1(-ln R_n) + m s
+!>
+!> with phi(x) = (1 - exp(-x))/x and the exponential integral E1. Every sum is one of positive
+!> terms: nothing cancels, neither at R = 0 nor at R = 1. `y = -ln R` travels beside R.
+module friction_subloading_exact_law
+    use friction_exponential_integral, only : e1, inverse_e1
+    use friction_kinds, only : wp
+    use friction_law, only : law_state, sliding
+    use friction_subloading_law, only : start_far, subloading_law
+    implicit none
+    private
+
+    public :: subloading_exact_law
+
+    type, extends(subloading_law) :: subloading_exact_law
+    contains
+        procedure :: follows_path
+        procedure :: start_rate
+        procedure :: rest
+        procedure :: slide
+        procedure :: weakening
+        procedure :: solve
+    end type subloading_exact_law
+
+contains
+
+    pure function follows_path(self) result(follows)
+        class(subloading_exact_law), intent(in) :: self
+        logical :: follows
+
+        follows = .true.
+    end function follows_path
+
+    !> The flow of R depends on R alone, so that dR/dR_n = ln R/ln R_n.
+    pure function start_rate(self, pressure, start, state) result(rate)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: pressure
+        type(law_state), intent(in) :: start, state
+        real(wp) :: rate
+
+        rate = 0.0_wp
+        if (start%r > 0.0_wp .and. start%r < 1.0_wp) rate = state%mu * pressure * (log(state%r) &
+            / log(start%r))
+    end function start_rate
+
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+        real(wp) :: full, fall
+
+        call friction_coefficient(self, 0.0_wp, dt, old, new%mu, fall)
+        full = new%mu * pressure
+        strength = old%r * full
+        new%r = 0.0_wp
+        if (full > 0.0_wp) new%r = min(traction / full, 1.0_wp)
+    end subroutine rest
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+        real(wp) :: fall, y
+
+        call friction_coefficient(self, slip, dt, old, new%mu, fall)
+        call similarity_ratio(old%r, self%m * slip, new%r, y)
+        d_pressure = new%r * new%mu
+        resistance = d_pressure * pressure
+        d_slip = pressure * (new%mu * self%m * y - new%r * fall)
+    end subroutine slide
+
+    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one
+    !> end.
+    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: bound
+        real(wp) :: mu, fall, mu_to, fall_to, r, y
+
+        call friction_coefficient(self, from, dt, old, mu, fall)
+        call friction_coefficient(self, to, dt, old, mu_to, fall_to)
+        call similarity_ratio(old%r, self%m * to, r, y)
+        bound = pressure * (r * fall - mu_to * self%m * y)
+    end function weakening
+
+    !> The pair (s, ln y) by Newton's method from the start of the backward Euler scheme: three or
+    !> four iterations as a rule.
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+        integer, parameter :: max_iterations = 15
+        real(wp), parameter :: small_step = 1.0e-8_wp   ! the next error is its square
+        real(wp), parameter :: y_largest = 500.0_wp     ! where exp(-y) still is a normal number
+        real(wp) :: v_n, mu, fall, s, r, e, y, lag, d, ds, dz
+        integer :: iteration
+
+        solved = .false.
+        call friction_coefficient(self, 0.0_wp, dt, old, mu, fall)
+        if (stiffness <= pressure * fall) return   ! several equilibria possible
+        call start_far(self, trial - old%r * mu * pressure, mu * pressure, stiffness, old%r, s, r, &
+            e)
+        if (.not. r > 0.0_wp) return
+        y = -(log(r) + ((1.0_wp - r) - e))
+        v_n = 0.0_wp
+        if (old%r > 0.0_wp .and. old%r < 1.0_wp) v_n = e1(-log(old%r))
+
+        do iteration = 1, max_iterations
+            if (y > y_largest) return
+            r = exp(-y)
+            call friction_coefficient(self, s, dt, old, mu, fall)
+            lag = 0.0_wp
+            if (y > 0.0_wp) lag = e1(y) - (v_n + self%m * s)
+            d = stiffness + pressure * (mu * self%m * y - r * fall)
+            ds = (trial - stiffness * s - pressure * mu * (r - y * lag)) / d
+            dz = 0.0_wp
+            if (y > 0.0_wp) dz = (lag - self%m * ds) / r
+            solved = self%kappa * abs(ds) <= small_step .and. stiffness * abs(ds) &
+                <= small_step * trial .and. max(1.0_wp, y) * abs(dz) <= small_step
+            if (solved) exit
+            s = max(s + ds, 0.05_wp * s)
+            if (y < 1.0_wp) then
+                y = y * exp(min(dz, 3.0_wp))
+            else
+                y = y - log(max(1.0_wp - y * dz, 0.05_wp))
+            end if
+        end do
+        if (.not. solved) return
+
+        s = s + ds
+        y = y + y * dz
+        answer%slip = s
+        answer%state%r = exp(-y)
+        call friction_coefficient(self, s, dt, old, answer%state%mu, fall)
+        answer%d_pressure = answer%state%r * answer%state%mu
+        answer%resistance = answer%d_pressure * pressure
+        answer%d_slip = pressure * (answer%state%mu * self%m * y - answer%state%r * fall)
+        solved = s > 0.0_wp
+    end subroutine solve
+
+    !> mu after the slip s, and -d(mu)/ds, which is never negative and shrinks with s.
+    pure subroutine friction_coefficient(self, s, dt, old, mu, fall)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: s             !! slip, >= 0 [L]
+        real(wp), intent(in) :: dt            !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old    !! state at the start of the increment
+        real(wp), intent(out) :: mu           !! within its bounds in spite of round-off [-]
+        real(wp), intent(out) :: fall         !! -d(mu)/ds [1/L]
+        real(wp) :: x, healed, decay, mean, tilt
+
+        x = self%kappa * s + self%xi * dt
+        healed = self%xi * dt * (self%mu_s - self%mu_k)
+        call decay_means(x, decay, mean, tilt)
+        mu = self%mu_k + ((old%mu - self%mu_k) * decay + healed * mean)
+        mu = min(max(mu, self%mu_k), self%mu_s)
+        fall = self%kappa * ((old%mu - self%mu_k) * decay + healed * tilt)
+    end subroutine friction_coefficient
+
+    !> exp(-x) and the means over 0 < t < 1 of exp(-x t) and of t exp(-x t): (1 - exp(-x))/x, and
+    !> minus its derivative, from a series where they would cancel.
+    pure subroutine decay_means(x, decay, mean, tilt)
+        real(wp), intent(in) :: x                     !! >= 0
+        real(wp), intent(out) :: decay, mean, tilt
+        real(wp), parameter :: x_series = 0.5_wp
+        integer, parameter :: n_terms = 13   !! the next is below 1e-16 up to there
+        real(wp) :: sum_of_terms
+        integer :: k
+
+        decay = exp(-x)
+        if (x > x_series) then
+            mean = (1.0_wp - decay) / x
+            tilt = (mean - decay) / x
+        else
+            sum_of_terms = 0.0_wp
+            do k = n_terms, 0, -1   ! of (-x)^k/(k! (k + 2))
+                sum_of_terms = 1.0_wp / (k + 2) - x / (k + 1) * sum_of_terms
+            end do
+            tilt = sum_of_terms
+            mean = decay + x * tilt
+        end if
+    end subroutine decay_means
+
+    !> R after the slip `m s`.
+    pure subroutine similarity_ratio(r_n, ms, r, y)
+        real(wp), intent(in) :: r_n   !! R at the start of the increment, 0 to 1 [-]
+        real(wp), intent(in) :: ms    !! m times the slip, >= 0 [-]
+        real(wp), intent(out) :: r    !! R at its end [-]
+        real(wp), intent(out) :: y    !! -ln R; 0 for R = 0, which only a contact that has not slid
+                                      !! can have
+        real(wp) :: v
+
+        r = r_n
+        y = 0.0_wp
+        if (r_n > 0.0_wp) y = -log(r_n)
+        if (r_n >= 1.0_wp .or. .not. ms > 0.0_wp) return
+        v = ms
+        if (r_n > 0.0_wp) v = e1(y) + ms
+        y = inverse_e1(v)
+        r = max(exp(-y), r_n)
+    end subroutine similarity_ratio
+
+end module friction_subloading_exact_law
