@@ -3,6 +3,7 @@
 module friction_contact
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, sliding
+    use friction_reloading, only : find_reloading, reloading
     use friction_return_map, only : return_map
     use friction_status, only : friction_ok
     implicit none
@@ -28,13 +29,6 @@ module friction_contact
         real(wp) :: pressure        !! at the end of the increment, if given [F/L^2]
         logical :: pressure_given   !! the pressure replaces the normal spring
     end type contact_motion
-
-    !> The least share of the strength that the traction uses on its way through an increment.
-    type :: reloading
-        real(wp) :: share         !! of the share at the start, 0 to 1 [-]
-        real(wp) :: by_q(2)       !! d(share)/dq [1/L]
-        real(wp) :: by_pressure   !! d(share)/d(pressure) [L^2/F]
-    end type reloading
 
     !> State of a contact point.
     type :: contact_point
@@ -146,8 +140,7 @@ contains
         type(law_state) :: start
         type(reloading) :: reload
         logical :: follows
-        real(wp) :: distance, strength, inverse, share, t1, t2, coupling, along, across, &
-            before
+        real(wp) :: distance, strength, inverse, share, t1, t2, coupling, along, across
 
         status = friction_ok
         distance = sqrt(q(1)**2 + q(2)**2)
@@ -155,7 +148,7 @@ contains
         call surface%rest(alpha_t * distance, pressure, dt, start, new%inner, strength)
         follows = surface%follows_path()
         if (follows) then
-            reload = least_share(old%u_et, q, strength / alpha_t, pressure)
+            call find_reloading(old%u_et, [q(1), q(2)], strength / alpha_t, pressure, reload)
             start%r = reload%share * start%r
             strength = reload%share * strength
         end if
@@ -203,8 +196,8 @@ contains
         if (.not. follows) return
 
         ! The traction at the start of sliding counts, too: in the energy, and in the tangent.
-        before = alpha_t * reload%share * hypot(old%u_et(1), old%u_et(2))
-        new%dissipation = old%dissipation + 0.5_wp * (before + slid%resistance) * slid%slip
+        strength = alpha_t * reload%share * hypot(old%u_et(1), old%u_et(2))
+        new%dissipation = old%dissipation + 0.5_wp * (strength + slid%resistance) * slid%slip
         coupling = coupling * old%inner%r * surface%start_rate(pressure, start, slid%state)
         by_pressure(1) = by_pressure(1) + coupling * reload%by_pressure * t1
         by_pressure(2) = by_pressure(2) + coupling * reload%by_pressure * t2
@@ -213,37 +206,5 @@ contains
         by_q(1, 2) = by_q(1, 2) + coupling * t1 * reload%by_q(2)
         by_q(2, 2) = by_q(2, 2) + coupling * t2 * reload%by_q(2)
     end subroutine tangential_update
-
-    !> Where traction and strength both change linearly, their ratio moves along a straight line,
-    !> from the unit vector `e` (the traction starts on its surface) to q/reach; its least
-    !> magnitude is its distance from zero (docs/theory.md, section 8).
-    pure function least_share(u_et, q, reach, pressure) result(reload)
-        real(wp), intent(in) :: u_et(2)    !! elastic tangential displacement at the start [L]
-        real(wp), intent(in) :: q(2)       !! the same at the end, without slip [L]
-        real(wp), intent(in) :: reach      !! the elastic displacement that the strength at the end
-                                           !! allows, proportional to the pressure [L]
-        real(wp), intent(in) :: pressure   !! at the end, > 0 [F/L^2]
-        type(reloading) :: reload
-        real(wp), parameter :: straight = 1.0e-11_wp   ! round-off, where u_n is larger than u_et
-        real(wp) :: e(2), way(2), length, ahead, aside
-
-        reload = reloading(share=1.0_wp, by_q=[0.0_wp, 0.0_wp], by_pressure=0.0_wp)
-        length = hypot(u_et(1), u_et(2))
-        if (.not. length > 0.0_wp) return
-        e = u_et / length
-        way = q - reach * e
-        length = hypot(way(1), way(2))
-        if (.not. length > 0.0_wp) return
-        way = way / length
-        ahead = e(1) * way(1) + e(2) * way(2)
-        if (ahead >= 0.0_wp .or. q(1) * way(1) + q(2) * way(2) <= 0.0_wp) return
-        aside = e(1) * way(2) - e(2) * way(1)
-        reload%share = 0.0_wp
-        if (abs(aside) <= straight) return   ! through zero, where |aside| has a kink
-        reload%share = abs(aside)
-        ahead = ahead / length
-        reload%by_q = sign(ahead, -aside) * [-way(2), way(1)]
-        reload%by_pressure = reload%share * ahead * (reach / pressure)
-    end function least_share
 
 end module friction_contact

@@ -250,7 +250,9 @@ contains
         real(wp), intent(inout) :: statev(nstatv)
         real(wp), intent(inout) :: traction(3), tangent(3, 3)
         integer, intent(out) :: status
-        type(subloading_law) :: subloading
+        type(subloading_law), target :: subloading
+        type(subloading_exact_law), target :: exact
+        class(law), pointer :: surface
         integer :: scheme
         integer(int64) :: seen
 
@@ -276,17 +278,19 @@ contains
             if (nprops >= prop_scheme) scheme = whole_number(props(prop_scheme))
             select case (scheme)
             case (scheme_backward_euler)
-                call update_point(subloading, props, motion, n_tangential, statev, traction, &
-                    tangent, status)
+                surface => subloading
             case (scheme_exact_rate)
-                call update_point(subloading_exact_law(subloading_law=subloading), props, motion, &
-                    n_tangential, statev, traction, tangent, status)
+                exact%subloading_law = subloading
+                surface => exact
             case default
                 status = friction_bad_property
+                return
             end select
         case default
             status = friction_bad_law
+            return
         end select
+        call update_point(surface, props, motion, n_tangential, statev, traction, tangent, status)
     end subroutine advance
 
     !> One point under a law: unpacks `statev`, updates, and packs it again.

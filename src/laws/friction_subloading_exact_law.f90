@@ -10,7 +10,7 @@ module friction_subloading_exact_law
     use friction_exponential_integral, only : e1, inverse_e1
     use friction_kinds, only : wp
     use friction_law, only : law_state, sliding
-    use friction_subloading_law, only : start_far, subloading_law
+    use friction_subloading_law, only : subloading_law
     implicit none
     private
 
@@ -92,8 +92,7 @@ contains
         bound = pressure * (r * fall - mu_to * self%m * y)
     end function weakening
 
-    !> The pair (s, ln y) by Newton's method from the start of the backward Euler scheme: three or
-    !> four iterations as a rule.
+    !> The pair (s, ln y) by Newton's method; three or four iterations as a rule.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
         class(subloading_exact_law), intent(in) :: self
         real(wp), intent(in) :: trial, stiffness, pressure, dt
@@ -102,19 +101,25 @@ contains
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 15
         real(wp), parameter :: small_step = 1.0e-8_wp   ! the next error is its square
-        real(wp), parameter :: y_largest = 500.0_wp     ! where exp(-y) still is a normal number
-        real(wp) :: v_n, mu, fall, s, r, e, y, lag, d, ds, dz
+        real(wp), parameter :: y_largest = 200.0_wp     ! far from where exp(y) overflows
+        real(wp), parameter :: steepest = 10.0_wp       ! for the start, where -ln R has no bound
+        real(wp) :: v_n, rate, mu, fall, s, r, y, lag, d, ds, dz
         integer :: iteration
 
         solved = .false.
         call friction_coefficient(self, 0.0_wp, dt, old, mu, fall)
         if (stiffness <= pressure * fall) return   ! several equilibria possible
-        call start_far(self, trial - old%r * mu * pressure, mu * pressure, stiffness, old%r, s, r, &
-            e)
-        if (.not. r > 0.0_wp) return
-        y = -(log(r) + ((1.0_wp - r) - e))
         v_n = 0.0_wp
-        if (old%r > 0.0_wp .and. old%r < 1.0_wp) v_n = e1(-log(old%r))
+        rate = self%m * steepest
+        if (old%r >= 1.0_wp) then
+            rate = self%m
+        else if (old%r > 0.0_wp) then
+            y = -log(old%r)
+            v_n = e1(y)
+            rate = self%m * min(y / (1.0_wp - old%r), steepest)
+        end if
+        call start(rate, old%r, mu * pressure, trial - old%r * mu * pressure, stiffness, s, y)
+        if (.not. s > 0.0_wp) return
 
         do iteration = 1, max_iterations
             if (y > y_largest) return
@@ -148,6 +153,34 @@ contains
         answer%d_slip = pressure * (answer%state%mu * self%m * y - answer%state%r * fall)
         solved = s > 0.0_wp
     end subroutine solve
+
+    !> A start for any slip: with `R' = rate (1 - R)` and mu as at the beginning, backward Euler's
+    !> step ends at the root of a quadratic. The positive root, taken where nothing cancels.
+    pure subroutine start(rate, r_n, full, excess, stiffness, s, y)
+        real(wp), intent(in) :: rate        !! R'/(1 - R) at R_n [1/L]
+        real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
+        real(wp), intent(in) :: full        !! traction of the normal sliding surface [F/L^2]
+        real(wp), intent(in) :: excess      !! trial traction beyond the strength [F/L^2]
+        real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
+        real(wp), intent(out) :: s, y       !! slip [L] and -ln R
+        real(wp), parameter :: small = 0.1_wp
+        real(wp) :: e_n, b, root, e
+
+        e_n = 1.0_wp - r_n
+        b = 0.5_wp * (stiffness + rate * (e_n * full - excess))
+        root = sqrt(b**2 + stiffness * rate * excess)
+        if (b > 0.0_wp) then
+            s = excess / (b + root)
+        else
+            s = (root - b) / (stiffness * rate)
+        end if
+        e = e_n / (1.0_wp + rate * s)
+        if (e > small) then
+            y = -log(max((r_n + rate * s) / (1.0_wp + rate * s), tiny(r_n)))
+        else
+            y = e * (1.0_wp + e * (0.5_wp + e / 3.0_wp))
+        end if
+    end subroutine start
 
     !> mu after the slip s, and -d(mu)/ds, which is never negative and shrinks with s.
     pure subroutine friction_coefficient(self, s, dt, old, mu, fall)

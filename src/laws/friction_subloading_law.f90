@@ -18,7 +18,7 @@ module friction_subloading_law
     implicit none
     private
 
-    public :: subloading_law, read_subloading_law, start_far
+    public :: subloading_law, read_subloading_law
 
     type, extends(law) :: subloading_law
         real(wp) :: mu_s    !! static friction coefficient, >= mu_k [-]

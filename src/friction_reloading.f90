@@ -1,0 +1,51 @@
+!> An increment that unloads a contact before it loads it again: where sliding starts, for laws that
+!> follow the path within an increment (docs/theory.md, section 8).
+module friction_reloading
+    use friction_kinds, only : wp
+    implicit none
+    private
+
+    public :: reloading, find_reloading
+
+    !> The least share of the strength that the traction uses on its way through an increment.
+    type :: reloading
+        real(wp) :: share         !! of the share at the start, 0 to 1 [-]
+        real(wp) :: by_q(2)       !! d(share)/dq [1/L]
+        real(wp) :: by_pressure   !! d(share)/d(pressure) [L^2/F]
+    end type reloading
+
+contains
+
+    !> Where traction and strength both change linearly, their ratio moves along a straight line,
+    !> from the unit vector `e` (the traction starts on its surface) to q/reach; its least
+    !> magnitude is its distance from zero.
+    pure subroutine find_reloading(u_et, q, reach, pressure, reload)
+        real(wp), intent(in) :: u_et(2)    !! elastic tangential displacement at the start [L]
+        real(wp), intent(in) :: q(2)       !! the same at the end, without slip [L]
+        real(wp), intent(in) :: reach      !! the elastic displacement that the strength at the end
+                                           !! allows, proportional to the pressure [L]
+        real(wp), intent(in) :: pressure   !! at the end, > 0 [F/L^2]
+        type(reloading), intent(out) :: reload
+        real(wp), parameter :: straight = 1.0e-11_wp   ! round-off, where u_n is larger than u_et
+        real(wp) :: e(2), way(2), length, ahead, aside
+
+        reload = reloading(share=1.0_wp, by_q=[0.0_wp, 0.0_wp], by_pressure=0.0_wp)
+        length = hypot(u_et(1), u_et(2))
+        if (.not. length > 0.0_wp) return
+        e = u_et / length
+        way = q - reach * e
+        length = hypot(way(1), way(2))
+        if (.not. length > 0.0_wp) return
+        way = way / length
+        ahead = e(1) * way(1) + e(2) * way(2)
+        if (ahead >= 0.0_wp .or. q(1) * way(1) + q(2) * way(2) <= 0.0_wp) return
+        aside = e(1) * way(2) - e(2) * way(1)
+        reload%share = 0.0_wp
+        if (abs(aside) <= straight) return   ! through zero, where |aside| has a kink
+        reload%share = abs(aside)
+        ahead = ahead / length
+        reload%by_q = sign(ahead, -aside) * [-way(2), way(1)]
+        reload%by_pressure = reload%share * ahead * (reach / pressure)
+    end subroutine find_reloading
+
+end module friction_reloading
