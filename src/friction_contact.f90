@@ -139,15 +139,13 @@ contains
         type(sliding) :: slid
         type(law_state) :: start
         type(reloading) :: reload
-        logical :: follows
         real(wp) :: distance, strength, inverse, share, t1, t2, coupling, along, across
 
         status = friction_ok
         distance = sqrt(q(1)**2 + q(2)**2)
+        call surface%rest(alpha_t * distance, pressure, dt, old%inner, new%inner, strength)
         start = old%inner
-        call surface%rest(alpha_t * distance, pressure, dt, start, new%inner, strength)
-        follows = surface%follows_path()
-        if (follows) then
+        if (surface%follows_path) then
             call find_reloading(old%u_et, [q(1), q(2)], strength / alpha_t, pressure, reload)
             start%r = reload%share * start%r
             strength = reload%share * strength
@@ -193,7 +191,7 @@ contains
         by_q(2, 1) = (along - across) * t1 * t2
         by_q(1, 2) = by_q(2, 1)
         by_q(2, 2) = along * t2**2 + across * t1**2
-        if (.not. follows) return
+        if (.not. surface%follows_path) return
 
         ! The traction at the start of sliding counts, too: in the energy, and in the tangent.
         strength = alpha_t * reload%share * hypot(old%u_et(1), old%u_et(2))

@@ -28,6 +28,10 @@ module friction_law
     end type sliding
 
     type, abstract :: law
+        !> Does the law follow the path within an increment? Then an increment that unloads before
+        !> it loads again slides from the least share of the strength on its way: `r` at the start
+        !> stands for that share, and the strength is proportional to it and to the pressure.
+        logical :: follows_path = .false.
     contains
         procedure(virgin_interface), deferred :: virgin
         procedure(admits_interface), deferred :: admits
@@ -35,7 +39,6 @@ module friction_law
         procedure(slide_interface), deferred :: slide
         procedure :: weakening => never_weakens
         procedure :: solve => not_solved
-        procedure :: follows_path => ends_only
         procedure :: start_rate => no_start_rate
     end type law
 
@@ -122,16 +125,6 @@ contains
 
         solved = .false.
     end subroutine not_solved
-
-    !> Does the law follow the path within an increment? Then an increment that unloads before it
-    !> loads again slides from the least share of the strength on its way: `r` at the start stands
-    !> for that share, and the strength is proportional to it and to the pressure.
-    pure function ends_only(self) result(follows)
-        class(law), intent(in) :: self
-        logical :: follows
-
-        follows = .false.
-    end function ends_only
 
     !> d(resistance)/d(r at the start of sliding), for a law that follows the path.
     pure function no_start_rate(self, pressure, start, state) result(rate)

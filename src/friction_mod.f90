@@ -281,6 +281,7 @@ contains
                 surface => subloading
             case (scheme_exact_rate)
                 exact%subloading_law = subloading
+                exact%follows_path = .true.
                 surface => exact
             case default
                 status = friction_bad_property

@@ -18,7 +18,6 @@ module friction_subloading_exact_law
 
     type, extends(subloading_law) :: subloading_exact_law
     contains
-        procedure :: follows_path
         procedure :: start_rate
         procedure :: rest
         procedure :: slide
@@ -27,13 +26,6 @@ module friction_subloading_exact_law
     end type subloading_exact_law
 
 contains
-
-    pure function follows_path(self) result(follows)
-        class(subloading_exact_law), intent(in) :: self
-        logical :: follows
-
-        follows = .true.
-    end function follows_path
 
     !> The flow of R depends on R alone, so that dR/dR_n = ln R/ln R_n.
     pure function start_rate(self, pressure, start, state) result(rate)

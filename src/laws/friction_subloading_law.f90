@@ -144,7 +144,7 @@ contains
         integer, parameter :: max_iterations = 12
         real(wp), parameter :: third = 1.0_wp / 3.0_wp
         real(wp) :: c, w0, full, excess, s, r, e, iw, mu, mu_rate, log_r, r_rate, ms, gain, slack, &
-            misfit, d, ds, dr, bend_s, bend_r
+            misfit, ir, z, d, ds, dr, bend_s, bend_r
         integer :: iteration
         logical :: near
 
@@ -166,6 +166,7 @@ contains
             mu_rate = -self%kappa * c * iw**2
             ms = self%m * s
             gain = 1.0_wp / (r + ms)
+            ir = 1.0_wp / r
             slack = (1.0_wp - r) - e
             log_r = log(r) + slack
             r_rate = -self%m * log_r * r * gain
@@ -175,7 +176,7 @@ contains
             ds = (trial - stiffness * s - pressure * mu * (r - misfit)) * d
             dr = r_rate * ds - misfit
             ! ... and its correction by the second derivatives, where that is one.
-            bend_r = gain * dr * (self%m * ds - 0.5_wp * ms * dr / r)
+            bend_r = gain * dr * (self%m * ds - 0.5_wp * ms * dr * ir)
             bend_s = -pressure * (mu_rate * ds * (dr - self%kappa * iw * r * ds) - mu * bend_r) * d
             bend_r = r_rate * bend_s - bend_r
             if (abs(bend_s) <= 0.5_wp * abs(ds) .and. abs(bend_r) <= 0.5_wp * abs(dr)) then
@@ -192,10 +193,10 @@ contains
         if (.not. solved) return
 
         ! The last step, too small to need another logarithm.
-        dr = dr / r
-        log_r = log_r + dr * (1.0_wp - dr * (0.5_wp - dr * third))
+        z = dr * ir
+        log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * third))
         s = s + ds
-        r = r + dr * r
+        r = r + dr
         iw = 1.0_wp / (w0 + self%kappa * s)
         mu = self%mu_k + c * iw
         answer%slip = s
@@ -223,15 +224,17 @@ contains
         s = 0.0_wp
         r = r_n
         e = 1.0_wp - r_n
-        good = r_n > least_ratio
-        if (.not. good) return
         full = (self%mu_k + c * iw0) * pressure
         fall = self%kappa * c * iw0**2 * pressure
+        ! too much slip, to judge by `-ln R >= 2 (1 - R)/(1 + R)` and before any logarithm?
+        good = r_n > least_ratio .and. self%m * excess * (1.0_wp + r_n) <= little * r_n &
+            * ((stiffness - r_n * fall) * (1.0_wp + r_n) + 2.0_wp * self%m * e * full)
+        if (.not. good) return
         rate = -self%m * log(r_n)
         d = 1.0_wp / (stiffness - r_n * fall + full * rate)
         s = excess * d
         dr = rate * s
-        bend_r = dr * self%m * s / r_n
+        bend_r = dr * s * (self%m / r_n)
         bend_s = (fall * s * (dr - self%kappa * iw0 * r_n * s) + full * bend_r) * d
         bend_r = rate * bend_s - bend_r
         good = dr <= little * min(r, e) .and. self%m * s <= little * r_n .and. abs(bend_r) &
