@@ -10,7 +10,8 @@ module namelist_input
     implicit none
     private
 
-    public :: above, any_number, at_least, between, fault, namelist_file, read_namelist_file, rule
+    public :: above, any_number, at_least, between, fault, namelist_file, number_in_text, &
+        read_namelist_file, rule
 
     !> The numbers that a key may take.
     type :: rule
@@ -51,7 +52,7 @@ module namelist_input
         type(group_seen), allocatable :: groups(:)
         type(fault), allocatable :: faults(:)
     contains
-        procedure :: get_real, get_reals, get_integer, get_choice
+        procedure :: get_real, get_reals, get_integer, get_choice, get_text
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
     end type namelist_file
 
@@ -592,6 +593,25 @@ contains
         end if
     end subroutine get_choice
 
+    !> Any text in quotes, a path for example; empty if the key is not given.
+    subroutine get_text(self, group, key, value)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=:), allocatable, intent(out) :: value
+        type(value_token), allocatable :: tokens(:)
+
+        value = ''
+        call gather(self, group, key, tokens)
+        if (size(tokens) == 0) return
+        if (size(tokens) > 1) then
+            call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
+        else if (.not. tokens(1)%quoted .or. len_trim(tokens(1)%text) == 0) then
+            call self%reject(group, key, 'must be text in quotes', token=tokens(1))
+        else
+            value = tokens(1)%text
+        end if
+    end subroutine get_text
+
     !> Collects the values of a key in the order of their subscripts, and says that the key is
     !> known.
     subroutine gather(self, group, key, tokens)
@@ -735,18 +755,27 @@ contains
 
     ! ---- small things ------------------------------------------------------------------------
 
-    !> A real number as Fortran and its neighbours write it; also NaN and infinity, which the caller
-    !> refuses by name.
     subroutine read_number(token, value, ok)
         type(value_token), intent(in) :: token
+        real(dp), intent(out) :: value
+        logical, intent(out) :: ok
+
+        call number_in_text(token%text, value, ok)
+        ok = ok .and. .not. token%quoted
+    end subroutine read_number
+
+    !> A real number as Fortran and its neighbours write it; also NaN and infinity, which the caller
+    !> refuses by name.
+    subroutine number_in_text(text, value, ok)
+        character(len=*), intent(in) :: text
         real(dp), intent(out) :: value
         logical, intent(out) :: ok
         character(len=:), allocatable :: word
         integer :: status, i
 
         value = 0.0_dp
-        word = lower(token%text)
-        ok = .not. token%quoted .and. len(word) > 0
+        word = lower(text)
+        ok = len(word) > 0
         if (.not. ok) return
         if (verify(word, '0123456789+-.ed') /= 0) then
             i = 1
@@ -764,7 +793,7 @@ contains
         call ieee_set_halting_mode(ieee_overflow, .false.)  ! 1e999 is infinite, and refused as such
         read (word, *, iostat=status) value
         ok = status == 0
-    end subroutine read_number
+    end subroutine number_in_text
 
     pure function lower(text) result(lowered)
         character(len=*), intent(in) :: text

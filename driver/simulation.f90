@@ -1,13 +1,15 @@
 !> Runs the slider through its programme: steps in time, rows on disk, events found, energy booked.
 module simulation
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_snap_back, statev_slip
+    use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
+        statev_slip
     use progress_bar, only : progress
     use recorder, only : csv_recorder
     use run_settings, only : settings
-    use slider_system, only : energy_balance, initial_state, slider, slider_state
+    use slider_system, only : energy_balance, initial_state, place, slider, slider_state
     use slip_events, only : event_finder, moment, slip_event
-    use time_integrator, only : newmark, step_report
+    use step_control, only : stepper
+    use time_integrator, only : step_report
     implicit none
     private
 
@@ -25,6 +27,7 @@ module simulation
         character(len=:), allocatable :: failure   !! empty if the run reached its end
         integer :: steps = 0                       !! taken
         integer :: iterations = 0, most_iterations = 0
+        integer :: rejected = 0                    !! steps tried in vain
         integer :: snap_backs = 0                  !! steps that saw several equilibria
         real(dp) :: time = 0.0_dp                  !! reached [T]
         real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
@@ -45,45 +48,46 @@ contains
         logical, intent(in) :: show_progress
         type(outcome), intent(out) :: result
         type(slider) :: system
-        type(newmark) :: method
+        type(stepper) :: steps
         type(slider_state) :: old, new
         type(step_report) :: report
         type(event_finder) :: finder
         type(progress) :: bar
-        real(dp) :: time
-        integer :: k, status
+        logical :: complete
+        integer :: status
 
         system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
-        method = newmark(run%beta, run%gamma, run%tolerance, run%max_iterations)
-        finder%threshold = smallest_drop * run%area * run%props(4) * maxval(run%drive%normal)
-        allocate (result%pieces(size(run%drive%start)))
+        finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
+        allocate (result%pieces(run%drive%listed))
         result%failure = ''
 
-        call initial_state(system, 1, run%drive%normal(1), old, status)
+        call initial_state(system, 1, run%drive%normal_traction(0.0_dp, 1), old, status)
         if (status < 0) result%failure = 'at the start: ' // friction_message(status)
+        call place(system, run%initial, old)
+        result%energy%at_start = system%stored(old)
+        call steps%begin(run, system, old)
         new = old
         call record(old)
         call bar%begin(show_progress)
-        do k = 1, run%n_steps
+        do while (steps%passed < run%n_steps)
             if (len(result%failure) > 0) exit
-            time = min(k * run%dt, run%t_end)
-            call method%step(system, run%drive%position(time), &
-                run%drive%normal(run%drive%piece(time)), time - (k - 1) * run%dt, old, new, report)
+            call steps%take_step(old, new, report, complete)
             if (report%status < 0) then
-                call fail(friction_message(report%status))
+                call fail(why_stopped(run%mass, report%status))
                 exit
             end if
-            new%time = time
             if (report%status == friction_snap_back) result%snap_backs = result%snap_backs + 1
-            result%steps = k
-            result%iterations = result%iterations + report%iterations
-            result%most_iterations = max(result%most_iterations, report%iterations)
+            result%steps = result%steps + 1
             call system%account(old, new, result%energy)
-            if (mod(k, run%interval) == 0 .or. k == run%n_steps) call record(new)
+            if (complete .and. (mod(steps%passed, run%interval) == 0 &
+                .or. steps%passed == run%n_steps)) call record(new)
             call watch(new)
             old = new
-            call bar%show(real(k, dp) / run%n_steps)
+            call bar%show(old%time / run%t_end)
         end do
+        result%iterations = steps%iterations
+        result%most_iterations = steps%most_iterations
+        result%rejected = steps%rejected
         call bar%clear()
         result%time = old%time
 
@@ -100,27 +104,41 @@ contains
             type(slider_state), intent(in) :: state
             type(slip_event) :: event
             logical :: found
+            integer :: i
 
             result%peak_velocity = max(result%peak_velocity, maxval(state%v))
             call finder%look(moment(state%time, state%spring(1), state%statev(statev_slip, 1), &
                 state%v(1)), event, found)
             if (.not. found) return
-            call add_event(result%pieces(run%drive%piece(event%onset)), event, &
-                run%drive%start(run%drive%piece(event%onset)))
+            i = min(run%drive%piece(event%onset), run%drive%listed)
+            call add_event(result%pieces(i), event, run%drive%start(i))
             call records%write_event(event, run%area)
             if (records%failed()) call fail('cannot write the events (disk full?)')
         end subroutine watch
 
         subroutine fail(why)
             character(len=*), intent(in) :: why
-            character(len=80) :: place
+            character(len=80) :: where
 
-            write (place, '(a, es13.6, a, i0, a)') 'at time ', min(k * run%dt, run%t_end), &
-                ', step ', k, ': '
-            result%failure = trim(place) // ' ' // why
+            write (where, '(a, es13.6, a, i0, a)') 'at time ', new%time, ', step ', &
+                result%steps + 1, ': '
+            result%failure = trim(where) // ' ' // why
         end subroutine fail
 
     end subroutine simulate
+
+    !> Without inertia, a balance that cannot be found means that there is none nearby.
+    pure function why_stopped(mass, status) result(why)
+        real(dp), intent(in) :: mass
+        integer, intent(in) :: status
+        character(len=:), allocatable :: why
+
+        why = friction_message(status)
+        if (mass <= 0.0_dp &
+            .and. status == friction_no_convergence) why = 'the slider is unstable ' &
+            // 'without inertia: friction falls faster than the spring unloads. ' &
+            // 'Give it a mass to see the jump, or a stiffer spring'
+    end function why_stopped
 
     !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time
     !> that began in the piece before says nothing about either.

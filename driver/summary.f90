@@ -24,6 +24,8 @@ contains
         write (output_unit, '(2a, a, i0)') 'Newton iterations  ', &
             trim(per_step(result%iterations, result%steps)), ' a step, most ', &
             result%most_iterations
+        if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
+            result%rejected
         if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
             result%snap_backs, &
             ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
@@ -94,6 +96,8 @@ contains
 
         associate (e => result%energy)
             write (output_unit, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
+            if (abs(e%at_start) > 0.0_dp) write (output_unit, '(a, es14.6)') &
+                '  less the start   ', -e%at_start
             write (output_unit, '(a, es14.6)') '  kinetic          ', e%kinetic
             write (output_unit, '(a, es14.6)') '  spring           ', e%spring
             write (output_unit, '(a, es14.6)') '  contact, elastic ', e%contact
