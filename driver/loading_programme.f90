@@ -22,7 +22,7 @@ module loading_programme
         real(dp) :: phase = 0.0_dp                 !! at time 0 [rad]
         integer :: listed = 1                      !! pieces that the summary tells apart
     contains
-        procedure :: piece, position, normal_traction, largest_normal, next_start
+        procedure :: piece, position, drive_velocity, normal_traction, largest_normal, next_start
     end type programme
 
     character(len=*), parameter :: group = 'drive'
@@ -60,6 +60,17 @@ contains
         since = t - self%start(i)
         x = self%travel(i) + since * (self%velocity(i) + 0.5_dp * self%acceleration(i) * since)
     end function position
+
+    !> Velocity of the drive at time `t`, as piece `i` has it: at the end of that piece or inside
+    !> it.
+    pure function drive_velocity(self, t, i) result(v)
+        class(programme), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        integer, intent(in) :: i
+        real(dp) :: v               !! [L/T]
+
+        v = self%velocity(i) + self%acceleration(i) * (t - self%start(i))
+    end function drive_velocity
 
     !> Normal traction at time `t`, as piece `i` has it: at the end of that piece or inside it.
     pure function normal_traction(self, t, i) result(p)

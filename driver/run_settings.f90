@@ -18,8 +18,13 @@ module run_settings
         real(dp) :: area                    !! apparent contact area [L^2]
         type(initial_values) :: initial
         type(programme) :: drive
-        real(dp) :: t_end, dt               !! end of the run, step [T]
+        real(dp) :: t_end, dt               !! end of the run, step or first step [T]
+        logical :: adaptive                 !! the error chooses the steps
+        real(dp) :: rtol                    !! error in a step, part of the static friction force
+        real(dp) :: dt_min, dt_max          !! of adaptive steps [T]
+        integer :: order                    !! of the method with the friction law in it
         real(dp) :: beta, gamma             !! of Newmark's method
+        real(dp) :: rho_infinity   !! of the generalised-alpha method; negative: not asked for
         real(dp) :: tolerance               !! of the force residual, relative to the largest force
         integer :: max_iterations           !! of Newton's method in a step
         integer :: interval                 !! steps between two rows of the CSV file
@@ -144,16 +149,19 @@ contains
 
         faults_before = size(file%faults)
         call file%get_real(group, 't_end', run%t_end, above(0.0_dp))
-        call file%get_real(group, 'dt', run%dt, above(0.0_dp))
-        call file%get_real(group, 'beta', run%beta, between(0.01_dp, 1.0_dp), default=0.25_dp)
-        call file%get_real(group, 'gamma', run%gamma, between(0.5_dp, 1.0_dp), &
-            default=merge(0.5_dp, 1.0_dp, run%mass > 0.0_dp))
-        call file%get_real(group, 'tolerance', run%tolerance, above(0.0_dp), default=1.0e-10_dp)
-        call file%get_integer(group, 'max_iterations', run%max_iterations, &
-            between(1.0_dp, 1.0e6_dp), default=25)
+        run%adaptive = file%given(group, 'rtol')
+        call read_method(file, run)
+        if (run%adaptive) then
+            call read_adaptive(file, run)
+        else
+            call file%get_real(group, 'dt', run%dt, above(0.0_dp))
+            if (file%given(group, 'dt_min')) call file%reject(group, 'dt_min', 'needs rtol')
+            if (file%given(group, 'dt_max')) call file%reject(group, 'dt_max', 'needs rtol')
+        end if
         run%n_steps = 0
         if (size(file%faults) > faults_before .or. .not. run%dt > 0.0_dp) return
         if (run%dt > run%t_end) call file%reject(group, 'dt', 'must not exceed t_end')
+        if (run%adaptive) return
         if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) then
             call file%reject(group, 'dt', 'makes more steps up to t_end than can be counted')
         end if
@@ -163,5 +171,47 @@ contains
         if (abs(steps - run%n_steps) > 1.0e-9_dp * steps) run%n_steps = ceiling(steps)   ! last is
                                                                                          ! short
     end subroutine read_time
+
+    !> Newmark's or the generalised-alpha method, and Newton's.
+    subroutine read_method(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'time'
+
+        call file%get_real(group, 'beta', run%beta, between(0.01_dp, 1.0_dp), default=0.25_dp)
+        call file%get_real(group, 'gamma', run%gamma, between(0.5_dp, 1.0_dp), &
+            default=merge(0.5_dp, 1.0_dp, run%mass > 0.0_dp))
+        run%rho_infinity = -1.0_dp
+        if (file%given(group, 'rho_infinity')) then
+            call file%get_real(group, 'rho_infinity', run%rho_infinity, between(0.0_dp, 1.0_dp))
+            if (file%given(group, 'beta')) call file%reject(group, 'beta', &
+                'follows from rho_infinity: give one of them')
+            if (file%given(group, 'gamma')) call file%reject(group, 'gamma', &
+                'follows from rho_infinity: give one of them')
+            if (run%mass <= 0.0_dp) call file%reject(group, 'rho_infinity', 'needs a mass > 0')
+        end if
+        call file%get_real(group, 'tolerance', run%tolerance, above(0.0_dp), default=1.0e-10_dp)
+        call file%get_integer(group, 'max_iterations', run%max_iterations, &
+            between(1.0_dp, 1.0e6_dp), default=25)
+    end subroutine read_method
+
+    !> Steps that the error chooses.
+    subroutine read_adaptive(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'time'
+
+        call file%get_real(group, 'rtol', run%rtol, between(1.0e-12_dp, 0.1_dp))
+        call file%get_real(group, 'dt_max', run%dt_max, above(0.0_dp), default=run%t_end)
+        call file%get_real(group, 'dt_min', run%dt_min, above(0.0_dp), &
+            default=1.0e-12_dp * run%t_end)
+        call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
+            default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
+        if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
+        run%order = 1
+        if (size(run%props) > 9) then
+            if (run%props(10) > 0.0_dp) run%order = 2
+        end if
+    end subroutine read_adaptive
 
 end module run_settings

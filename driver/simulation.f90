@@ -7,7 +7,7 @@ module simulation
     use recorder, only : csv_recorder
     use run_settings, only : settings
     use slider_system, only : energy_balance, initial_state, place, slider, slider_state
-    use slip_events, only : event_finder, moment, slip_event
+    use slip_events, only : event_finder, moment, slip_event, turning_point
     use step_control, only : stepper
     use time_integrator, only : step_report
     implicit none
@@ -54,7 +54,7 @@ contains
         type(event_finder) :: finder
         type(progress) :: bar
         logical :: complete
-        integer :: status
+        integer :: status, rows_due
 
         system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
         finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
@@ -67,21 +67,27 @@ contains
         result%energy%at_start = system%stored(old)
         call steps%begin(run, system, old)
         new = old
+        rows_due = 0
         call record(old)
         call bar%begin(show_progress)
-        do while (steps%passed < run%n_steps)
+        do while (.not. steps%finished(old))
             if (len(result%failure) > 0) exit
             call steps%take_step(old, new, report, complete)
             if (report%status < 0) then
-                call fail(why_stopped(run%mass, report%status))
+                call fail(why_stopped(run, report%status))
                 exit
             end if
             if (report%status == friction_snap_back) result%snap_backs = result%snap_backs + 1
             result%steps = result%steps + 1
-            call system%account(old, new, result%energy)
-            if (complete .and. (mod(steps%passed, run%interval) == 0 &
-                .or. steps%passed == run%n_steps)) call record(new)
-            call watch(new)
+            if (complete) rows_due = rows_due + 1
+            if (run%adaptive) then
+                call system%account(old, new, result%energy, steps%middle)
+            else
+                call system%account(old, new, result%energy)
+            end if
+            if (rows_due == run%interval .or. steps%finished(new)) call record(new)
+            if (rows_due == run%interval) rows_due = 0
+            call watch(old, new)
             old = new
             call bar%show(old%time / run%t_end)
         end do
@@ -100,21 +106,42 @@ contains
             if (records%failed()) call fail('cannot write the time series (disk full?)')
         end subroutine record
 
-        subroutine watch(state)
+        !> Looks for slip events, at the end of a step and where the force turns within.
+        subroutine watch(before, now)
+            type(slider_state), intent(in) :: before, now
+            type(moment) :: turn
+            logical :: found
+            integer :: i
+
+            i = run%drive%piece(before%time)
+            call turning_point(seen(before, i), seen(now, i), turn, found)
+            if (found .and. now%time <= run%drive%next_start(before%time)) call look(turn)
+            call look(seen(now, i))
+            result%peak_velocity = max(result%peak_velocity, maxval(now%v))
+        end subroutine watch
+
+        pure function seen(state, i) result(now)
             type(slider_state), intent(in) :: state
+            integer, intent(in) :: i   !! piece of the programme
+            type(moment) :: now
+
+            now = moment(state%time, state%spring(1), state%statev(statev_slip, 1), state%v(1), &
+                run%stiffness * (run%drive%drive_velocity(state%time, i) - state%v(1)))
+        end function seen
+
+        subroutine look(now)
+            type(moment), intent(in) :: now
             type(slip_event) :: event
             logical :: found
             integer :: i
 
-            result%peak_velocity = max(result%peak_velocity, maxval(state%v))
-            call finder%look(moment(state%time, state%spring(1), state%statev(statev_slip, 1), &
-                state%v(1)), event, found)
+            call finder%look(now, event, found)
             if (.not. found) return
             i = min(run%drive%piece(event%onset), run%drive%listed)
             call add_event(result%pieces(i), event, run%drive%start(i))
             call records%write_event(event, run%area)
             if (records%failed()) call fail('cannot write the events (disk full?)')
-        end subroutine watch
+        end subroutine look
 
         subroutine fail(why)
             character(len=*), intent(in) :: why
@@ -127,17 +154,20 @@ contains
 
     end subroutine simulate
 
-    !> Without inertia, a balance that cannot be found means that there is none nearby.
-    pure function why_stopped(mass, status) result(why)
-        real(dp), intent(in) :: mass
+    !> What stands behind a step that cannot be taken.
+    pure function why_stopped(run, status) result(why)
+        type(settings), intent(in) :: run
         integer, intent(in) :: status
         character(len=:), allocatable :: why
 
         why = friction_message(status)
-        if (mass <= 0.0_dp &
-            .and. status == friction_no_convergence) why = 'the slider is unstable ' &
-            // 'without inertia: friction falls faster than the spring unloads. ' &
-            // 'Give it a mass to see the jump, or a stiffer spring'
+        if (status /= friction_no_convergence) return
+        if (run%mass <= 0.0_dp) then
+            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
+                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
+        else if (run%adaptive) then
+            why = 'not within the tolerance by steps as short as dt_min'
+        end if
     end function why_stopped
 
     !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time

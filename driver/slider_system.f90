@@ -12,8 +12,8 @@ module slider_system
     implicit none
     private
 
-    public :: energy_balance, friction_forces, initial_state, initial_values, place, slider, &
-        slider_state
+    public :: apply_normal_traction, energy_balance, friction_forces, initial_state, &
+        initial_values, place, slider, slider_state
 
     !> What stays.
     type :: slider
@@ -150,16 +150,46 @@ contains
         end do
     end subroutine friction_forces
 
-    !> Books the step from `old` to `new`: works by the mean force over the step.
-    pure subroutine account(self, old, new, energy)
+    !> A sudden change of the normal traction, at one moment of time.
+    pure subroutine apply_normal_traction(system, normal, state)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: normal   !! afterwards [F/L^2]
+        type(slider_state), intent(inout) :: state
+        real(dp) :: old(size(state%statev, 1), size(state%x)), zero(size(state%x)), &
+            tangent(size(state%x))
+        integer :: status
+
+        if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
+        zero = 0.0_dp
+        old = state%statev
+        call friction_forces(system, old, system%penetration_step(state%normal, normal), zero, &
+            0.0_dp, state%statev, state%friction, tangent, status)
+        state%normal = normal
+        if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
+            - state%friction) / system%mass
+    end subroutine apply_normal_traction
+
+    !> Books the step from `old` to `new`: works by the mean force over the step, or by Simpson's
+    !> rule if the state half-way is known.
+    pure subroutine account(self, old, new, energy, middle)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: old, new
         type(energy_balance), intent(inout) :: energy
+        type(slider_state), intent(in), optional :: middle
 
-        energy%drive_work = energy%drive_work &
-            + 0.5_dp * sum(old%spring + new%spring) * (new%drive - old%drive)
-        energy%damped = energy%damped &
-            + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
+        if (present(middle)) then
+            energy%drive_work = energy%drive_work + (sum(old%spring) &
+                * (4.0_dp * middle%drive - 3.0_dp * old%drive - new%drive) &
+                + 4.0_dp * sum(middle%spring) * (new%drive - old%drive) + sum(new%spring) &
+                * (old%drive - 4.0_dp * middle%drive + 3.0_dp * new%drive)) / 6.0_dp
+            energy%damped = energy%damped + self%damping * (new%time - old%time) &
+                * sum(old%v**2 + 4.0_dp * middle%v**2 + new%v**2) / 6.0_dp
+        else
+            energy%drive_work = energy%drive_work &
+                + 0.5_dp * sum(old%spring + new%spring) * (new%drive - old%drive)
+            energy%damped = energy%damped &
+                + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
+        end if
         energy%kinetic = 0.5_dp * self%mass * sum(new%v**2)
         energy%spring = 0.5_dp * sum(new%spring**2) / self%stiffness
         energy%contact = 0.5_dp * self%area * self%props(3) * sum(new%statev(statev_u_et, :)**2)

@@ -38,8 +38,12 @@ contains
             return
         end if
         exit_status = exit_done
-        if (wanted%verb == 'check') write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', &
-            run%n_steps, ' steps'
+        if (wanted%verb /= 'check') return
+        if (run%adaptive) then
+            write (output_unit, '(2a)') wanted%input, ': valid, adaptive steps'
+        else
+            write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', run%n_steps, ' steps'
+        end if
     end subroutine check_input
 
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.

@@ -24,6 +24,7 @@ module time_integrator
     type :: step_report
         integer :: status = friction_ok     !! ok, snap back, or the error that ended the step
         integer :: iterations = 0           !! linear systems solved
+        real(dp) :: stiffness = 0.0_dp      !! of drive spring and contact at the end, largest [F/L]
         real(dp) :: residual(0:most_shown) = 0.0_dp   !! relative, before each iteration and at the
                                                       !! end
     end type step_report
@@ -137,6 +138,7 @@ contains
                 if (norm < norm_old) exit
             end do
         end do
+        report%stiffness = system%stiffness + maxval(tangent)
         if (.not. inertial) call look_for_another_balance()
 
     contains

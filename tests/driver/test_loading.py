@@ -149,6 +149,78 @@ class QuasiStatic(Columns):
             self.assertEqual(self.run_text(namelist(changes), '--no-plot').returncode, status)
 
 
+class AdaptiveSteps(Columns):
+    def events_of(self, changes, without=()):
+        text = namelist({('time', 't_end'): '12', ('output', 'interval'): '1000', **changes}, without)
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertIn('rejected steps', result.stdout) if ('time', 'rtol') in changes else None
+        unbalanced = float(result.stdout.split('unbalanced')[1].split()[0])
+        return [float(row['onset']) for row in self.rows('case_out/case_events.csv')], unbalanced
+
+    def test_event_times_come_closer_to_the_truth_as_the_tolerance_tightens(self):
+        # an explicit Runge-Kutta 5(4) solution at rtol 1e-11 has its first two onsets here
+        truth = [3.987831136299, 7.132989343357]
+        error = {}
+        for rtol in ('1e-4', '1e-6', '1e-8'):
+            onsets, _ = self.events_of({('time', 'rtol'): rtol}, [('time', 'dt')])
+            error[rtol] = max(abs(a - b) for a, b in zip(onsets, truth))
+        self.assertLess(error['1e-6'], 0.5 * error['1e-4'])
+        self.assertLess(error['1e-8'], 0.3 * error['1e-6'])
+        self.assertLess(error['1e-8'], 2e-4)
+
+    def test_energy_balance_closes_with_the_tolerance(self):
+        rest = [abs(self.events_of({('time', 'rtol'): rtol}, [('time', 'dt')])[1])
+                for rtol in ('1e-5', '1e-7')]
+        self.assertLess(rest[1], 0.3 * rest[0])
+
+    def test_steps_end_where_pieces_of_the_programme_end(self):
+        run = self.run_columns(namelist({('drive', 'velocity'): '1, -2, 0', ('drive', 'duration'): '3*0.03',
+                                         ('time', 'rtol'): '1e-6'}, [('time', 'dt')]))
+        for t in (0.03, 0.06, 0.1):
+            self.assertLess(min(abs(t - time) for time in run['time']), 1e-15)
+
+    def test_steps_stay_within_their_bounds(self):
+        run = self.run_columns(namelist({('time', 'rtol'): '1e-3', ('time', 'dt_max'): '2e-3'}, [('time', 'dt')]))
+        steps = [b - a for a, b in zip(run['time'], run['time'][1:])]
+        self.assertLess(max(steps), 2.01e-3)
+        result = self.run_text(namelist({('time', 'rtol'): '1e-10', ('time', 'dt_min'): '1e-2',
+                                         ('time', 'dt'): '1e-2', ('time', 't_end'): '5'}), '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('steps as short as dt_min', result.stderr)
+
+    def test_opening_and_closing_are_met_exactly(self):
+        run = self.run_columns(namelist({('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5',
+                                         ('time', 'rtol'): '1e-4', ('time', 't_end'): '0.4'}, [('time', 'dt')]))
+        # 10 + 20 sin(10 pi t) = 0 at sin = -1/2
+        for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
+            self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
+
+    def test_quasi_static_steps_adapt_too(self):
+        changes = {**QuasiStatic.steady, ('drive', 'velocity'): '0.1', ('time', 'rtol'): '1e-6'}
+        run = self.run_columns(namelist(changes, [('time', 'dt')]))
+        self.assertAlmostEqual(run['mu'][-1], 0.3, delta=1e-5)
+
+    def test_numerical_damping_calms_the_contact(self):
+        rough = {}
+        for rho in ('1.0', '0.5'):
+            run = self.run_columns(namelist({('time', 't_end'): '4.8', ('time', 'dt'): '2e-3',
+                                             ('slider', 'damping'): '0', ('time', 'rho_infinity'): rho}))
+            late = [v for t, v in zip(run['time'], run['velocity']) if t > 4.5]
+            rough[rho] = max(late) - min(late)
+        self.assertLess(rough['0.5'], 0.5 * rough['1.0'])
+
+    def test_bad_keys_of_adaptive_steps_and_damping(self):
+        self.refused(namelist({('time', 'dt_min'): '1', ('time', 'dt_max'): '1'}),
+                     '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
+        self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
+                     '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
+        self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
+                               ('time', 'gamma'): '0.5', ('slider', 'mass'): '0'}),
+                     '&time rho_infinity = 1.5: must be from 0 to 1', '&time beta = 0.25: follows from rho',
+                     '&time gamma = 0.5: follows from rho', '&time rho_infinity = 1.5: needs a mass')
+
+
 class BadProgramme(Columns):
     def test_files_that_are_no_programme(self):
         for content, said in (
