@@ -19,10 +19,11 @@ module run_settings
         type(initial_values) :: initial
         type(programme) :: drive
         real(dp) :: t_end, dt               !! end of the run, step or first step [T]
+        real(dp) :: checkpoint              !! time between two checkpoints, by the clock [s]
         logical :: adaptive                 !! the error chooses the steps
-        real(dp) :: rtol                    !! error in a step, part of the static friction force
-        real(dp) :: dt_min, dt_max          !! of adaptive steps [T]
-        integer :: order                    !! of the method with the friction law in it
+        real(dp) :: rtol = 0.0_dp           !! error in a step, part of the static friction force
+        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
+        integer :: order = 1                !! of the method with the friction law in it
         real(dp) :: beta, gamma             !! of Newmark's method
         real(dp) :: rho_infinity   !! of the generalised-alpha method; negative: not asked for
         real(dp) :: tolerance               !! of the force residual, relative to the largest force
@@ -62,6 +63,8 @@ contains
         call read_time(file, run)
         if (file%has_group('output')) continue
         call file%get_integer('output', 'interval', run%interval, at_least(1.0_dp), default=1)
+        call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
+            default=60.0_dp)
         call file%refuse_unknown()
     end subroutine read_settings
 

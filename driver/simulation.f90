@@ -1,39 +1,21 @@
 !> Runs the slider through its programme: steps in time, rows on disk, events found, energy booked.
 module simulation
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use checkpoint, only : snapshot, write_checkpoint
     use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
         statev_slip
+    use platform, only : interrupted, seconds
     use progress_bar, only : progress
     use recorder, only : csv_recorder
+    use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use slider_system, only : energy_balance, initial_state, place, slider, slider_state
-    use slip_events, only : event_finder, moment, slip_event, turning_point
-    use step_control, only : stepper
+    use slider_system, only : initial_state, place, slider, slider_state
+    use slip_events, only : moment, slip_event, turning_point
     use time_integrator, only : step_report
     implicit none
     private
 
-    public :: event_totals, outcome, simulate
-
-    !> Sums over the events of one piece of the programme.
-    type :: event_totals
-        integer :: events = 0, recurrences = 0
-        real(dp) :: period = 0.0_dp, force_drop = 0.0_dp   !! sums; see `recurrences` and `events`
-        real(dp) :: peak_velocity = 0.0_dp
-    end type event_totals
-
-    !> What a run has come to.
-    type :: outcome
-        character(len=:), allocatable :: failure   !! empty if the run reached its end
-        integer :: steps = 0                       !! taken
-        integer :: iterations = 0, most_iterations = 0
-        integer :: rejected = 0                    !! steps tried in vain
-        integer :: snap_backs = 0                  !! steps that saw several equilibria
-        real(dp) :: time = 0.0_dp                  !! reached [T]
-        real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
-        type(energy_balance) :: energy
-        type(event_totals), allocatable :: pieces(:)
-    end type outcome
+    public :: event_totals, outcome, simulate, start_run
 
     !> A fall of the spring force counts as a slip event from this part of the static friction force
     !> on.
@@ -41,63 +23,77 @@ module simulation
 
 contains
 
-    !> `failure` of the outcome says when and why, if the run ends before its time.
-    subroutine simulate(run, records, show_progress, result)
+    !> `failure` of the outcome says when and why, if the run ends before its time. With a name for
+    !> checkpoints it leaves one now and then, and when it is interrupted; from that it can go on.
+    subroutine simulate(run, records, show_progress, result, checkpoint_name, from)
         type(settings), intent(in) :: run
         type(csv_recorder), intent(inout) :: records
         logical, intent(in) :: show_progress
         type(outcome), intent(out) :: result
-        type(slider) :: system
-        type(stepper) :: steps
-        type(slider_state) :: old, new
+        character(len=*), intent(in), optional :: checkpoint_name
+        type(snapshot), intent(in), optional :: from   !! an interrupted run of the same settings
+        type(snapshot) :: live
+        type(slider_state) :: new
         type(step_report) :: report
-        type(event_finder) :: finder
         type(progress) :: bar
+        real(dp) :: last_checkpoint
         logical :: complete
-        integer :: status, rows_due
 
-        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
-        finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
-        allocate (result%pieces(run%drive%listed))
-        result%failure = ''
-
-        call initial_state(system, 1, run%drive%normal_traction(0.0_dp, 1), old, status)
-        if (status < 0) result%failure = 'at the start: ' // friction_message(status)
-        call place(system, run%initial, old)
-        result%energy%at_start = system%stored(old)
-        call steps%begin(run, system, old)
-        new = old
-        rows_due = 0
-        call record(old)
-        call bar%begin(show_progress)
-        do while (.not. steps%finished(old))
-            if (len(result%failure) > 0) exit
-            call steps%take_step(old, new, report, complete)
+        if (present(from)) then
+            live = from
+        else
+            call start_run(run, live)
+            call record(live%state)
+        end if
+        new = live%state
+        last_checkpoint = seconds()
+        call bar%begin(show_progress, live%state%time / run%t_end)
+        do while (.not. live%steps%finished(live%state))
+            if (len(live%result%failure) > 0) exit
+            call live%steps%take_step(live%state, new, report, complete)
             if (report%status < 0) then
                 call fail(why_stopped(run, report%status))
                 exit
             end if
-            if (report%status == friction_snap_back) result%snap_backs = result%snap_backs + 1
-            result%steps = result%steps + 1
-            if (complete) rows_due = rows_due + 1
+            if (report%status == friction_snap_back) live%result%snap_backs = &
+                live%result%snap_backs + 1
+            live%result%steps = live%result%steps + 1
+            if (complete) live%rows_due = live%rows_due + 1
             if (run%adaptive) then
-                call system%account(old, new, result%energy, steps%middle)
+                call live%steps%system%account(live%state, new, live%result%energy, &
+                    live%steps%middle)
             else
-                call system%account(old, new, result%energy)
+                call live%steps%system%account(live%state, new, live%result%energy)
             end if
-            if (rows_due == run%interval .or. steps%finished(new)) call record(new)
-            if (rows_due == run%interval) rows_due = 0
-            call watch(old, new)
-            old = new
-            call bar%show(old%time / run%t_end)
+            if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
+            if (live%rows_due == run%interval) live%rows_due = 0
+            call watch(live%state, new)
+            live%state = new
+            call bar%show(live%state%time / run%t_end)
+            if (present(checkpoint_name)) call keep()
         end do
-        result%iterations = steps%iterations
-        result%most_iterations = steps%most_iterations
-        result%rejected = steps%rejected
         call bar%clear()
-        result%time = old%time
+        result = live%result
+        result%iterations = live%steps%iterations
+        result%most_iterations = live%steps%most_iterations
+        result%rejected = live%steps%rejected
+        result%time = live%state%time
 
     contains
+
+        !> A checkpoint, if it is time for one.
+        subroutine keep()
+            integer, parameter :: steps_between_looks = 64
+
+            if (interrupted()) then
+                call write_checkpoint(checkpoint_name, run, live, records)
+                call fail('interrupted; stickslip run with --resume goes on from here')
+            else if (mod(live%result%steps, steps_between_looks) == 0) then
+                if (seconds() - last_checkpoint < run%checkpoint) return
+                call write_checkpoint(checkpoint_name, run, live, records)
+                last_checkpoint = seconds()
+            end if
+        end subroutine keep
 
         subroutine record(state)
             type(slider_state), intent(in) :: state
@@ -117,7 +113,7 @@ contains
             call turning_point(seen(before, i), seen(now, i), turn, found)
             if (found .and. now%time <= run%drive%next_start(before%time)) call look(turn)
             call look(seen(now, i))
-            result%peak_velocity = max(result%peak_velocity, maxval(now%v))
+            live%result%peak_velocity = max(live%result%peak_velocity, maxval(now%v))
         end subroutine watch
 
         pure function seen(state, i) result(now)
@@ -135,10 +131,11 @@ contains
             logical :: found
             integer :: i
 
-            call finder%look(now, event, found)
+            call live%finder%look(now, event, found)
             if (.not. found) return
             i = min(run%drive%piece(event%onset), run%drive%listed)
-            call add_event(result%pieces(i), event, run%drive%start(i))
+            call add_event(live%result%pieces(i), event, run%drive%start(i))
+            live%result%onsets = [live%result%onsets, event%onset]
             call records%write_event(event, run%area)
             if (records%failed()) call fail('cannot write the events (disk full?)')
         end subroutine look
@@ -148,11 +145,29 @@ contains
             character(len=80) :: where
 
             write (where, '(a, es13.6, a, i0, a)') 'at time ', new%time, ', step ', &
-                result%steps + 1, ': '
-            result%failure = trim(where) // ' ' // why
+                live%result%steps + 1, ': '
+            live%result%failure = trim(where) // ' ' // why
         end subroutine fail
 
     end subroutine simulate
+
+    !> A run before its first step.
+    subroutine start_run(run, live)
+        type(settings), intent(in) :: run
+        type(snapshot), intent(out) :: live
+        type(slider) :: system
+        integer :: status
+
+        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
+        live%finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
+        allocate (live%result%pieces(run%drive%listed), live%result%onsets(0))
+        live%result%failure = ''
+        call initial_state(system, 1, run%drive%normal_traction(0.0_dp, 1), live%state, status)
+        if (status < 0) live%result%failure = 'at the start: ' // friction_message(status)
+        call place(system, run%initial, live%state)
+        live%result%energy%at_start = system%stored(live%state)
+        call live%steps%begin(run, system, live%state)
+    end subroutine start_run
 
     !> What stands behind a step that cannot be taken.
     pure function why_stopped(run, status) result(why)

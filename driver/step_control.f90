@@ -125,9 +125,11 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         logical, intent(out) :: complete
+        real(dp), parameter :: round_off = 1.0e-9_dp
         real(dp) :: aim, time
 
-        aim = min((self%passed + 1) * self%dt, self%t_end)
+        aim = (self%passed + 1) * self%dt
+        if (aim > self%t_end * (1.0_dp - round_off)) aim = self%t_end
         do
             complete = self%parts == 1
             time = aim
@@ -277,10 +279,13 @@ contains
         real(dp) :: time   !! [T]; huge without such a moment
 
         time = huge(time)
-        if (all(nint(old%statev(statev_status, :)) == nint(self%halves%statev(statev_status, :)))) &
-            return
+        associate (before => old%statev(statev_status, :), &
+            after => self%halves%statev(statev_status, :))
+            if (all(nint(before) == nint(after))) return
+        end associate
         time = turn(old, self%middle)
-        if (time > self%middle%time) time = turn(self%middle, self%halves)
+        if (time <= self%middle%time) return
+        time = turn(self%middle, self%halves)
     end function reversal
 
     !> When the velocity of the first block to do so changes its sign between two states, by cubic

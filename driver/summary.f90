@@ -6,7 +6,7 @@ module summary
     implicit none
     private
 
-    public :: print_summary
+    public :: print_event_times, print_summary
 
 contains
 
@@ -36,6 +36,19 @@ contains
         if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
         call print_energy(result)
     end subroutine print_summary
+
+    !> How far the events of a run are from those of a tighter one.
+    subroutine print_event_times(onsets, tighter)
+        real(dp), intent(in) :: onsets(:), tighter(:)   !! [T]
+        real(dp) :: apart(min(size(onsets), size(tighter)))
+
+        if (size(onsets) /= size(tighter)) write (output_unit, '(a, i0, a, i0)') &
+            'events             ', size(onsets), '; by the tighter run ', size(tighter)
+        if (size(apart) == 0) return
+        apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
+        write (output_unit, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
+            ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'
+    end subroutine print_event_times
 
     pure function per_step(total, steps) result(text)
         integer, intent(in) :: total, steps
