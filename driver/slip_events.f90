@@ -57,7 +57,7 @@ contains
         c2 = 3.0_dp * dt * (a%rate + b%rate) - 6.0_dp * (b%force - a%force)
         root = sqrt(max(0.0_dp, c1**2 - 4.0_dp * c0 * c2))
         ! the one root in (0, 1), without cancellation
-        if (c0 > 0.0_dp .eqv. c1 > 0.0_dp) then
+        if (c0 * sign(1.0_dp, c1) > 0.0_dp) then
             s = -0.5_dp * (c1 + sign(root, c1)) / c2
         else
             s = -2.0_dp * c0 / (c1 + sign(root, c1))
