@@ -20,6 +20,14 @@ class LongRun(Program):
         return subprocess.Popen([PROGRAM, 'run', 'case.nml', '--no-plot', *arguments], cwd=self.folder,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
+    def wait_for(self, name, size=1):
+        for _ in range(1000):
+            file = self.folder / name
+            if file.exists() and file.stat().st_size >= size:
+                return
+            time.sleep(0.01)
+        self.fail(f'{name} does not come')
+
     def results(self, folder):
         return [(self.folder / folder / name).read_bytes() for name in ('case.csv', 'case_events.csv')]
 
@@ -39,6 +47,7 @@ class LongRun(Program):
         arguments = ['--output', 'parts']
         for _ in range(times):
             process = self.start(*arguments)
+            self.wait_for('parts/case.csv', 100)   # it runs
             time.sleep(chance.uniform(0.1, 0.4) * seconds)
             process.send_signal(stop)
             process.communicate(timeout=120)
@@ -70,7 +79,7 @@ class StopAndGo(LongRun):
     def test_an_interrupt_says_so_and_leaves_whole_rows_and_a_checkpoint(self):
         (self.folder / 'case.nml').write_text(FIXED.replace('0.02\n', '1e9\n').replace("t_end = 40", "t_end = 4e4"))
         process = self.start()
-        time.sleep(0.3)
+        self.wait_for('case_out/case.csv', 10000)
         process.send_signal(signal.SIGINT)
         errors = process.communicate(timeout=120)[1]
         self.assertEqual(process.returncode, 1)
@@ -80,20 +89,21 @@ class StopAndGo(LongRun):
         self.assertEqual({len(line.split(',')) for line in lines}, {10})
 
     def test_resuming_what_cannot_be_resumed_is_refused(self):
-        (self.folder / 'case.nml').write_text(FIXED)
+        text = FIXED.replace('t_end = 40', 't_end = 4e4')
+        (self.folder / 'case.nml').write_text(text)
         result = self.run_program('run', 'case.nml', '--resume')
         self.assertEqual(result.returncode, 2)
         self.assertIn('there is no checkpoint', result.stderr)
         process = self.start()
-        time.sleep(0.25)
+        self.wait_for('case_out/case.checkpoint')
         process.kill()
         process.communicate()
         kept = (self.folder / 'case_out/case.checkpoint').read_bytes()
         rows = (self.folder / 'case_out/case.csv').read_bytes()
-        for change, said in ((FIXED.replace('kappa = 10', 'kappa = 11'), 'the input is not the one'),
-                             (FIXED, 'is damaged')):
+        for change, said in ((text.replace('kappa = 10', 'kappa = 11'), 'the input is not the one'),
+                             (text, 'is damaged')):
             (self.folder / 'case.nml').write_text(change)
-            if change == FIXED:
+            if change == text:
                 (self.folder / 'case_out/case.checkpoint').write_bytes(kept[:-10])
             result = self.run_program('run', 'case.nml', '--resume')
             self.assertEqual(result.returncode, 2)
