@@ -15,6 +15,8 @@ module command_line
         logical :: plot = .true.
         logical :: quiet = .false.
         integer :: jobs = 0                        !! runs of a sweep at a time; 0: one a core
+        logical :: resume = .false.
+        logical :: verify = .false.
         character(len=:), allocatable :: problem   !! what is wrong with the command line; or empty
     end type command
 
@@ -57,6 +59,10 @@ contains
                 wanted%plot = .false.
             case ('--quiet')
                 wanted%quiet = .true.
+            case ('--resume')
+                wanted%resume = .true.
+            case ('--verify')
+                wanted%verify = .true.
             case ('--output')
                 wanted%output = argument(i)
                 i = i + 1
@@ -71,7 +77,8 @@ contains
         if (len(wanted%problem) > 0) return
         if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
         if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
-            .or. .not. wanted%plot)) wanted%problem = 'check takes an input file and nothing else'
+            .or. .not. wanted%plot .or. wanted%resume &
+            .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
         wanted%stem = stem_of(wanted%input)
         if (len(wanted%output) == 0) wanted%output = wanted%stem // '_out'
     end subroutine read_command_line
@@ -135,6 +142,7 @@ contains
 
         write (merge(error_unit, output_unit, to_error), '(a)') &
             'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
+            '                     [--resume] [--verify]', &
             '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip sweep INPUT.nml [--output DIR] [--no-plot] [--quiet] [--jobs N]', &
             '       stickslip check INPUT.nml', &
@@ -153,6 +161,8 @@ contains
             '--no-plot     draw no picture', &
             '--quiet       no summary and no progress bar', &
             '--jobs N      runs of a sweep at a time (as many as there are cores)', &
+            '--resume      goes on from STEM.checkpoint, which an interrupted run left', &
+            '--verify      a second run at a tighter tolerance tells the error of event times', &
             '', &
             'Groups and keys of INPUT.nml, (default), [unit] of force F, length L, time T:', &
             '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
@@ -160,10 +170,13 @@ contains
             '  &slider    mass [F T^2/L], stiffness [F/L], damping (0) [F T/L], area (1) [L^2],', &
             '             normal_traction [F/L^2]', &
             '  &drive     velocity [L/T], duration [T], normal (normal_traction) [F/L^2]:', &
-            '             lists, the i-th values hold for duration(i)', &
+            '             lists, the i-th values hold for duration(i);', &
+            '             or file; normal_change, normal_amplitude, _frequency, _phase', &
             '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
-            '             max_iterations (25)', &
-            '  &output    interval (1): steps between two rows', &
+            '             max_iterations (25); adaptive with rtol, dt_min, dt_max; rho_infinity', &
+            '  &output    interval (1): steps between two rows; checkpoint (60) [s]', &
+            '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &
+            '  all of them: docs/driver.md', &
             'and of point, beside &friction (docs/point_mode.md):', &
             '  &point     ndir (3), cycles (1), tangent (.false.), and a path, either', &
             '             duration [T], steps, control_n, control_t1, control_t2', &

@@ -1,195 +1,194 @@
-!> Reads a table of numbers from a CSV file: a line of names, then a line a row. Every fault is
-!> told, with its line.
+!> Reads tables of numbers from CSV files and finds every fault in them, with line and column.
+!>
+!> The first line names the columns. Empty lines and lines that start with # do not count.
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-    use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end, iostat_eor
+    use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end
     use namelist_input, only : read_number
     implicit none
     private
 
-    public :: name_length, number_table, read_csv_table
+    public :: line_text, name_length, read_table, table
 
-    integer, parameter :: name_length = 32       !! of a column
-    integer, parameter :: line_length = 2000
-    integer, parameter :: fault_length = 160
-    integer, parameter :: most_faults = 20       !! told; a wrong file has one in every line
+    integer, parameter :: name_length = 40
+    integer, parameter :: line_length = 4096
+    integer, parameter :: most_faults = 20
 
-    type :: number_table
+    type :: line_text
+        character(len=:), allocatable :: text
+    end type line_text
+
+    type :: table
         character(len=name_length), allocatable :: names(:)   !! of the columns
-        integer :: rows = 0
-        real(dp), allocatable :: values(:, :)   !! (column, row); may hold more rows than there are
-        integer, allocatable :: lines(:)        !! of the file, where the rows stand
-        character(len=fault_length), allocatable :: faults(:)
+        real(dp), allocatable :: values(:, :)                 !! column, row
+        integer, allocatable :: lines(:)                      !! of the file, one a row
+        type(line_text), allocatable :: faults(:)             !! each with its line
     contains
         procedure :: column, add_fault
-    end type number_table
+    end type table
 
 contains
 
-    !> Reads a file; what is wrong with it is left in `table%faults`.
-    subroutine read_csv_table(name, table)
-        character(len=*), intent(in) :: name
-        type(number_table), intent(out) :: table
+    !> Takes a whole file; what is wrong with it is left in `read%faults`.
+    subroutine read_table(path, read_in)
+        character(len=*), intent(in) :: path
+        type(table), intent(out) :: read_in
         character(len=line_length) :: line
         character(len=256) :: message
-        integer :: unit, status, number
+        integer :: unit, status, number, rows
 
-        allocate (table%names(0), table%values(0, 0), table%lines(0), table%faults(0))
-        open (newunit=unit, file=name, status='old', action='read', iostat=status, iomsg=message)
+        allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
+        open (newunit=unit, file=path, status='old', action='read', iostat=status, iomsg=message)
         if (status /= 0) then
-            call table%add_fault(0, trim(message))
+            call read_in%add_fault(0, trim(message))
             return
         end if
         number = 0
-        do while (size(table%faults) < most_faults)
-            call next_line(unit, line, number, status, table)
-            if (status /= 0) exit
-            if (size(table%names) == 0) then
-                call read_names(line, number, table)
-            else
-                call read_row(line, number, table)
-            end if
-        end do
-        close (unit)
-        if (size(table%faults) == 0 .and. table%rows == 0) call table%add_fault(0, &
-            'must hold a line of names and rows of numbers below it')
-    end subroutine read_csv_table
-
-    !> The next line that is not blank. `status` is 0 until the end of the file.
-    subroutine next_line(unit, line, number, status, table)
-        integer, intent(in) :: unit
-        character(len=line_length), intent(out) :: line
-        integer, intent(inout) :: number
-        integer, intent(out) :: status
-        type(number_table), intent(inout) :: table
-        integer :: length
-
+        rows = 0
         do
+            read (unit, '(a)', iostat=status, iomsg=message) line
+            if (status /= 0) exit
             number = number + 1
-            length = 0
-            read (unit, '(a)', advance='no', size=length, iostat=status) line
-            if (status == 0) then
-                call table%add_fault(number, 'the line is too long')
-                status = iostat_end
+            if (number == 1 .and. line(:3) == char(239) // char(187) // char(191)) line = line(4:)
+            if (len_trim(line) == 0 .or. line(1:1) == '#') cycle
+            if (line(line_length:) /= ' ') then
+                call read_in%add_fault(number, 'the line is too long')
+            else if (size(read_in%names) == 0) then
+                call take_header(line, read_in)
+            else
+                call take_row(line, number, rows, read_in)
             end if
-            if (status == iostat_end .and. length > 0) status = iostat_eor
-            if (status /= iostat_eor) return
-            status = 0
-            line(length + 1:) = ''
-            if (length > 0) then
-                if (line(length:length) == achar(13)) line(length:length) = ' '
-            end if
-            if (len_trim(line) > 0) return
+            if (size(read_in%faults) > most_faults) exit
         end do
-    end subroutine next_line
+        if (status > 0) call read_in%add_fault(number, trim(message))
+        if (status == iostat_end .and. size(read_in%names) == 0) then
+            call read_in%add_fault(0, 'is empty')
+        end if
+        close (unit)
+        read_in%values = read_in%values(:, :rows)
+        read_in%lines = read_in%lines(:rows)
+    end subroutine read_table
 
-    subroutine read_names(line, number, table)
+    subroutine take_header(line, read_in)
         character(len=*), intent(in) :: line
-        integer, intent(in) :: number
-        type(number_table), intent(inout) :: table
+        type(table), intent(inout) :: read_in
         integer :: i
 
-        deallocate (table%names, table%values)
-        allocate (table%names(fields(line)), table%values(fields(line), 0))
-        do i = 1, size(table%names)
-            table%names(i) = field(line, i)
-            if (.not. any(table%names(:i - 1) == table%names(i))) cycle
-            call table%add_fault(number, "column '" // field(line, i) // "' is given twice")
+        deallocate (read_in%names, read_in%values, read_in%lines)
+        allocate (read_in%names(cells_in(line)))
+        do i = 1, size(read_in%names)
+            read_in%names(i) = cell(line, i)
         end do
-    end subroutine read_names
+        do i = 2, size(read_in%names)
+            if (any(read_in%names(:i - 1) == read_in%names(i))) call read_in%add_fault(0, &
+                "column '" // trim(read_in%names(i)) // "' is given twice")
+        end do
+        allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
+    end subroutine take_header
 
-    subroutine read_row(line, number, table)
+    subroutine take_row(line, number, rows, read_in)
         character(len=*), intent(in) :: line
-        integer, intent(in) :: number
-        type(number_table), intent(inout) :: table
-        real(dp) :: row(size(table%names))
+        integer, intent(in) :: number      !! of the line in the file
+        integer, intent(inout) :: rows     !! taken so far
+        type(table), intent(inout) :: read_in
+        character(len=name_length) :: word
         integer :: i
         logical :: ok
 
-        if (fields(line) /= size(row)) then
-            call table%add_fault(number, 'must have as many values as there are names')
+        if (cells_in(line) /= size(read_in%names)) then
+            call read_in%add_fault(number, 'has not as many cells as the header')
             return
         end if
-        do i = 1, size(row)
-            call read_number(field(line, i), row(i), ok)
-            if (.not. ok) then
-                call table%add_fault(number, trim(table%names(i)) // ' = ' // field(line, i) &
-                    // ': must be a number')
-            else if (.not. ieee_is_finite(row(i))) then
-                call table%add_fault(number, trim(table%names(i)) // ' = ' // field(line, i) &
-                    // ': must be finite')
-            end if
+        if (rows == size(read_in%lines)) call double_room(read_in)
+        rows = rows + 1
+        read_in%lines(rows) = number
+        do i = 1, size(read_in%names)
+            word = cell(line, i)
+            call read_number(trim(word), read_in%values(i, rows), ok)
+            if (ok) ok = ieee_is_finite(read_in%values(i, rows))
+            if (ok) cycle
+            read_in%values(i, rows) = 0.0_dp
+            call read_in%add_fault(number, trim(read_in%names(i)) // " = '" // trim(word) &
+                // "': must be a finite number")
         end do
-        call append(table, row, number)
-    end subroutine read_row
+    end subroutine take_row
 
-    pure subroutine append(table, row, line)
-        type(number_table), intent(inout) :: table
-        real(dp), intent(in) :: row(:)
-        integer, intent(in) :: line
+    subroutine double_room(read_in)
+        type(table), intent(inout) :: read_in
         real(dp), allocatable :: values(:, :)
         integer, allocatable :: lines(:)
+        integer :: n
 
-        if (table%rows == size(table%lines)) then   ! double: every row is copied twice at most
-            allocate (values(size(row), 2 * table%rows + 64), lines(2 * table%rows + 64))
-            values(:, :table%rows) = table%values(:, :table%rows)
-            lines(:table%rows) = table%lines
-            call move_alloc(values, table%values)
-            call move_alloc(lines, table%lines)
-        end if
-        table%rows = table%rows + 1
-        table%values(:, table%rows) = row
-        table%lines(table%rows) = line
-    end subroutine append
+        n = size(read_in%lines)
+        allocate (values(size(read_in%names), 2 * n), lines(2 * n))
+        values(:, :n) = read_in%values
+        lines(:n) = read_in%lines
+        call move_alloc(values, read_in%values)
+        call move_alloc(lines, read_in%lines)
+    end subroutine double_room
 
-    !> How many values does a line have?
-    pure function fields(line) result(n)
+    pure function cells_in(line) result(n)
         character(len=*), intent(in) :: line
-        integer :: n, i
+        integer :: n
+        integer :: i
 
         n = 1
         do i = 1, len_trim(line)
             if (line(i:i) == ',') n = n + 1
         end do
-    end function fields
+    end function cells_in
 
-    !> The n-th value of a line, without the blanks around it.
-    pure function field(line, n) result(text)
+    !> The i-th cell of a line, without the blanks, tabs and carriage returns around it.
+    pure function cell(line, i) result(word)
         character(len=*), intent(in) :: line
-        integer, intent(in) :: n
-        character(len=:), allocatable :: text
-        integer :: first, length, i
+        integer, intent(in) :: i
+        character(len=name_length) :: word
+        integer :: first, last, comma, k
 
         first = 1
-        do i = 2, n
+        do k = 1, i - 1
             first = first + index(line(first:), ',')
         end do
-        length = index(line(first:) // ',', ',') - 1
-        text = trim(adjustl(line(first:first + length - 1)))
-    end function field
+        comma = index(line(first:), ',')
+        last = len_trim(line)
+        if (comma > 0) last = first + comma - 2
+        do while (first < last)
+            if (iachar(line(first:first)) > 32) exit
+            first = first + 1
+        end do
+        do while (last >= first)
+            if (iachar(line(last:last)) > 32) exit
+            last = last - 1
+        end do
+        word = line(first:last)
+    end function cell
 
-    !> The place of a column; 0: there is none of that name.
-    pure function column(self, name) result(place)
-        class(number_table), intent(in) :: self
+    !> Place of a column; 0 if there is none of that name.
+    pure function column(self, name) result(i)
+        class(table), intent(in) :: self
         character(len=*), intent(in) :: name
-        integer :: place
+        integer :: i
 
-        do place = size(self%names), 1, -1
-            if (self%names(place) == name) return
+        do i = size(self%names), 1, -1
+            if (self%names(i) == name) return
         end do
     end function column
 
     !> Notes a fault in a line; line 0 is the file as a whole.
-    pure subroutine add_fault(self, line, text)
-        class(number_table), intent(inout) :: self
+    subroutine add_fault(self, line, text)
+        class(table), intent(inout) :: self
         integer, intent(in) :: line
         character(len=*), intent(in) :: text
-        character(len=fault_length) :: fault
+        character(len=20) :: place
+        type(line_text) :: new
 
-        fault = text
-        if (line > 0) write (fault, '(a, i0, 2a)') 'line ', line, ': ', &
-            text(:min(len(text), fault_length - 20))
-        self%faults = [character(len=fault_length) :: self%faults, fault]
+        if (size(self%faults) > most_faults) return
+        place = ''
+        if (line > 0) write (place, '(a, i0, a)') 'line ', line, ': '
+        new%text = trim(place) // ' ' // text
+        if (line == 0) new%text = text
+        if (size(self%faults) == most_faults) new%text = 'and more faults'
+        self%faults = [self%faults, new]
     end subroutine add_fault
 
 end module csv_table

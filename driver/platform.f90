@@ -1,12 +1,17 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
-    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_null_char
+    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, &
+        c_null_char
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     implicit none
     private
 
-    public :: cores, exit_program, have_command, is_terminal, make_directory, rename_file, &
-        run_in_directory, seconds, shell_word
+    public :: cores, exit_program, have_command, interrupted, is_terminal, make_directory, &
+        remove_file, rename_file, run_in_directory, seconds, shell_word, truncate_file, &
+        watch_for_interrupts
+
+    ! A signal handler can leave its message nowhere else.
+    logical, volatile :: was_interrupted = .false.
 
     interface
         function c_isatty(descriptor) result(answer) bind(C, name='isatty')
@@ -32,12 +37,35 @@ module platform
             integer(c_int) :: status
         end function c_access
 
-        function c_rename(from, to) result(status) bind(C, name='rename')
+        function c_truncate(path, length) result(status) bind(C, name='truncate')
+            import :: c_char, c_int, c_int64_t
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            integer(c_int64_t), value, intent(in) :: length
+            integer(c_int) :: status
+        end function c_truncate
+
+        function c_rename(old, new) result(status) bind(C, name='rename')
             import :: c_char, c_int
             implicit none
-            character(kind=c_char), intent(in) :: from(*), to(*)
+            character(kind=c_char), intent(in) :: old(*), new(*)
             integer(c_int) :: status
         end function c_rename
+
+        function c_remove(path) result(status) bind(C, name='remove')
+            import :: c_char, c_int
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            integer(c_int) :: status
+        end function c_remove
+
+        function c_signal(number, handler) result(before) bind(C, name='signal')
+            import :: c_funptr, c_int
+            implicit none
+            integer(c_int), value, intent(in) :: number
+            type(c_funptr), value, intent(in) :: handler
+            type(c_funptr) :: before
+        end function c_signal
 
         subroutine c_exit(status) bind(C, name='exit')
             import :: c_int
@@ -56,6 +84,43 @@ contains
         flush (error_unit)
         call c_exit(int(status, c_int))
     end subroutine exit_program
+
+    !> From now on Ctrl-C and a request to end are noted, not obeyed at once.
+    subroutine watch_for_interrupts()
+        integer(c_int), parameter :: sigint = 2_c_int, sigterm = 15_c_int
+        type(c_funptr) :: before
+
+        before = c_signal(sigint, c_funloc(note_interrupt))
+        before = c_signal(sigterm, c_funloc(note_interrupt))
+    end subroutine watch_for_interrupts
+
+    subroutine note_interrupt(number) bind(C)
+        integer(c_int), value, intent(in) :: number
+
+        was_interrupted = .true.
+    end subroutine note_interrupt
+
+    function interrupted() result(yes)
+        logical :: yes
+
+        yes = was_interrupted
+    end function interrupted
+
+    !> Cuts a file to a length.
+    function truncate_file(path, length) result(done)
+        character(len=*), intent(in) :: path
+        integer(int64), intent(in) :: length   !! bytes
+        logical :: done
+
+        done = c_truncate(path // c_null_char, length) == 0
+    end function truncate_file
+
+    subroutine remove_file(path)
+        character(len=*), intent(in) :: path
+        integer(c_int) :: ignored
+
+        ignored = c_remove(path // c_null_char)
+    end subroutine remove_file
 
     !> Is standard error a terminal?
     function is_terminal() result(terminal)
@@ -81,7 +146,7 @@ contains
         made = c_access(path // '/.' // c_null_char, write_and_search) == 0
     end function make_directory
 
-    !> Gives a file another name; a file that had that name is replaced in one go.
+    !> Gives a file another name; a file that had that name is replaced at once and whole.
     function rename_file(from, to) result(renamed)
         character(len=*), intent(in) :: from, to
         logical :: renamed

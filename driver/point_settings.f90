@@ -1,7 +1,7 @@
 !> What the point mode is told to do: the groups &friction and &point, with defaults and rules.
 module point_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use csv_table, only : name_length, number_table, read_csv_table
+    use csv_table, only : csv => table, name_length, read_table
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
     use run_settings, only : read_friction
@@ -125,7 +125,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(path), intent(inout) :: loading
         character(len=:), allocatable :: name
-        type(number_table) :: table
+        type(csv) :: table
         integer :: substeps, i
 
         call file%get_text(group, 'file', name)
@@ -139,26 +139,28 @@ contains
         end do
         if (len(name) == 0) return
         if (name(1:1) /= '/') name = file%name(:index(file%name, '/', back=.true.)) // name
-        call read_csv_table(name, table)
+        call read_table(name, table)
         if (size(table%faults) == 0) call take_table(table, substeps, loading)
         do i = 1, size(table%faults)
-            call file%reject(group, 'file', trim(table%faults(i)))
+            call file%reject(group, 'file', table%faults(i)%text)
         end do
     end subroutine read_file
 
     !> Each row is a segment: the columns `u_n` or `t_n`, and so on, tell what is controlled.
     subroutine take_table(table, substeps, loading)
-        type(number_table), intent(inout) :: table
+        type(csv), intent(inout) :: table
         integer, intent(in) :: substeps   !! increments to a row
         type(path), intent(inout) :: loading
         integer :: time, places(loading%ndir), first, n, i
         logical :: tractions(loading%ndir)
 
+        if (size(table%lines) == 0) call table%add_fault(0, &
+            'must hold rows of numbers below the names')
         call find_columns(table, loading%ndir, time, places, tractions)
         if (size(table%faults) > 0) return
         if (table%values(time, 1) < 0.0_dp) call table%add_fault(table%lines(1), &
             'time must be >= 0')
-        do i = 2, table%rows
+        do i = 2, size(table%lines)
             if (table%values(time, i) < table%values(time, i - 1)) call table%add_fault( &
                 table%lines(i), 'time must not go back')
         end do
@@ -166,17 +168,17 @@ contains
 
         first = 1   ! a row of zeros is where every path starts
         if (.not. any(abs(table%values([time, places], 1)) > 0.0_dp)) first = 2
-        n = table%rows - first + 1
+        n = size(table%lines) - first + 1
         if (n == 0) call table%add_fault(table%lines(1), 'there is nothing but the starting point')
-        loading%duration = table%values(time, first:table%rows)   ! the start is at time 0
+        loading%duration = table%values(time, first:size(table%lines))   ! the start is at time 0
         loading%duration(2:) = loading%duration(2:) - loading%duration(:n - 1)
         loading%steps = [(substeps, i = 1, n)]
         loading%by_traction = spread(tractions, 2, n)
-        loading%target = table%values(places, first:table%rows)
+        loading%target = table%values(places, first:size(table%lines))
     end subroutine take_table
 
     subroutine find_columns(table, ndir, time, places, tractions)
-        type(number_table), intent(inout) :: table
+        type(csv), intent(inout) :: table
         integer, intent(in) :: ndir
         integer, intent(out) :: time            !! its column
         integer, intent(out) :: places(ndir)    !! columns of the directions

@@ -140,7 +140,7 @@ contains
         time = 0.0_dp
         total = run%loading%increments()
         call records%write_row(time, point, 0)
-        call bar%begin(show_progress)
+        call bar%begin(show_progress, 0.0_dp)
         associate (path => run%loading)
             do cycle_number = 1, path%cycles
                 do i = 1, size(path%duration)

@@ -11,6 +11,7 @@ module progress_bar
         private
         logical :: shown = .false.
         real(dp) :: begun = 0.0_dp, last = 0.0_dp   !! wall-clock times [s]
+        real(dp) :: first = 0.0_dp   !! part that was done before
     contains
         procedure :: begin, show, clear
     end type progress
@@ -20,13 +21,15 @@ module progress_bar
 contains
 
     !> Only on a terminal, and only if wanted, will anything be shown.
-    subroutine begin(self, wanted)
+    subroutine begin(self, wanted, part)
         class(progress), intent(out) :: self
         logical, intent(in) :: wanted
+        real(dp), intent(in) :: part   !! done before, 0 to 1
 
         self%shown = wanted .and. is_terminal()
         self%begun = seconds()
         self%last = self%begun
+        self%first = part
     end subroutine begin
 
     !> Call as often as you like; draws five times a second at most.
@@ -43,7 +46,8 @@ contains
         filled = nint(width * part)
         write (error_unit, '(6a, i4, a, i0, a)', advance='no') achar(13), '[', &
             repeat('#', filled), repeat('.', width - filled), ']', ' ', nint(100.0_dp * part), &
-            ' %, ', nint((now - self%begun) * (1.0_dp - part) / max(part, 1.0e-6_dp)), ' s left    '
+            ' %, ', nint((now - self%begun) * (1.0_dp - part) &
+            / max(part - self%first, 1.0e-6_dp)), ' s left    '
         flush (error_unit)
     end subroutine show
 

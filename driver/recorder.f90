@@ -1,7 +1,7 @@
 !> Writes what a run has found: the time series and the slip events, as CSV. What is written stays
 !> written, whatever happens to the run.
 module recorder
-    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use friction_mod, only : statev_mu, statev_r, statev_slip
     use slider_system, only : slider_state
     use slip_events, only : slip_event
@@ -21,7 +21,7 @@ module recorder
         type(output_file) :: series, events
         integer :: rows = 0
     contains
-        procedure :: start, write_state, write_event, failed, finish
+        procedure :: start, go_on, flush_all, write_state, write_event, failed, finish
     end type csv_recorder
 
 contains
@@ -37,6 +37,25 @@ contains
         call self%series%flush_lines()
         call self%events%flush_lines()
     end subroutine start
+
+    !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
+    subroutine go_on(self, series_name, events_name, rows, bytes)
+        class(csv_recorder), intent(inout) :: self
+        character(len=*), intent(in) :: series_name, events_name
+        integer, intent(in) :: rows              !! of the time series
+        integer(int64), intent(in) :: bytes(2)   !! of the time series, of the events
+
+        call self%series%go_on(series_name, bytes(1))
+        call self%events%go_on(events_name, bytes(2))
+        self%rows = rows
+    end subroutine go_on
+
+    subroutine flush_all(self)
+        class(csv_recorder), intent(inout) :: self
+
+        call self%series%flush_lines()
+        call self%events%flush_lines()
+    end subroutine flush_all
 
     !> Has something been lost on its way to the disk?
     pure function failed(self) result(lost)

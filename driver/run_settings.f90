@@ -3,32 +3,30 @@ module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_message, friction_update, law_subloading, &
         scheme_backward_euler, scheme_exact_rate, statev_size
-    use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
+    use loading_programme, only : programme, read_drive
+    use namelist_input, only : above, any_number, at_least, between, namelist_file
+    use slider_system, only : initial_values
     implicit none
     private
 
-    public :: programme, read_friction, read_settings, settings
-
-    !> Drive velocity and normal traction over time, piecewise constant; the last piece goes on.
-    type :: programme
-        real(dp), allocatable :: start(:)      !! times at which the pieces start [T]
-        real(dp), allocatable :: velocity(:)   !! of the drive [L/T]
-        real(dp), allocatable :: normal(:)     !! normal traction [F/L^2]
-    contains
-        procedure :: piece
-        procedure :: position
-        procedure :: divide
-    end type programme
+    public :: read_friction, read_settings, settings
 
     type :: settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
-        real(dp) :: mass                    !! [M]
+        real(dp) :: mass                    !! 0: quasi-static [F T^2/L]
         real(dp) :: stiffness               !! of the drive spring [F/L]
         real(dp) :: damping                 !! [F T/L]
         real(dp) :: area                    !! apparent contact area [L^2]
+        type(initial_values) :: initial
         type(programme) :: drive
-        real(dp) :: t_end, dt               !! end of the run, step [T]
+        real(dp) :: t_end, dt               !! end of the run, step or first step [T]
+        real(dp) :: checkpoint              !! time between two checkpoints, by the clock [s]
+        logical :: adaptive                 !! the error chooses the steps
+        real(dp) :: rtol = 0.0_dp           !! error in a step, part of the static friction force
+        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
+        integer :: order = 1                !! of the method with the friction law in it
         real(dp) :: beta, gamma             !! of Newmark's method
+        real(dp) :: rho_infinity   !! of the generalised-alpha method; negative: not asked for
         real(dp) :: tolerance               !! of the force residual, relative to the largest force
         integer :: max_iterations           !! of Newton's method in a step
         integer :: interval                 !! steps between two rows of the CSV file
@@ -36,44 +34,6 @@ module run_settings
     end type settings
 
 contains
-
-    !> Which piece holds at time `t`?
-    pure function piece(self, t) result(i)
-        class(programme), intent(in) :: self
-        real(dp), intent(in) :: t   !! [T]
-        integer :: i
-
-        i = max(1, count(self%start <= t))
-    end function piece
-
-    !> How far the drive has moved by time `t`.
-    pure function position(self, t) result(x)
-        class(programme), intent(in) :: self
-        real(dp), intent(in) :: t   !! [T]
-        real(dp) :: x               !! [L]
-        integer :: i
-
-        x = 0.0_dp
-        do i = 2, self%piece(t)
-            x = x + self%velocity(i - 1) * (self%start(i) - self%start(i - 1))
-        end do
-        i = self%piece(t)
-        x = x + self%velocity(i) * (t - self%start(i))
-    end function position
-
-    !> Starts a new piece at time `t` that goes on as before, so that events are booked by
-    !> themselves from there on.
-    pure subroutine divide(self, t)
-        class(programme), intent(inout) :: self
-        real(dp), intent(in) :: t   !! > 0 [T]
-        integer :: i
-
-        i = self%piece(t)
-        if (.not. self%start(i) < t) return
-        self%start = [self%start(:i), t, self%start(i + 1:)]
-        self%velocity = [self%velocity(:i), self%velocity(i:)]
-        self%normal = [self%normal(:i), self%normal(i:)]
-    end subroutine divide
 
     !> Takes the settings from a file; every fault is left in `file%faults`.
     subroutine read_settings(file, run)
@@ -89,20 +49,23 @@ contains
             end if
         end do
         call read_friction(file, run%props)
-        call file%get_real('slider', 'mass', run%mass, above(0.0_dp))
+        call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
         call file%get_real('slider', 'damping', run%damping, at_least(0.0_dp), default=0.0_dp)
         call file%get_real('slider', 'area', run%area, above(0.0_dp), default=1.0_dp)
-        if (file%given('drive', 'normal')) then
+        if (file%given('drive', 'normal') .or. file%given('drive', 'file')) then
             call file%get_real('slider', 'normal_traction', normal, at_least(0.0_dp), &
                 default=0.0_dp)
         else
             call file%get_real('slider', 'normal_traction', normal, above(0.0_dp))
         end if
         call read_drive(file, normal, run%drive)
+        call read_initial(file, run)
         call read_time(file, run)
         if (file%has_group('output')) continue
         call file%get_integer('output', 'interval', run%interval, at_least(1.0_dp), default=1)
+        call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
+            default=60.0_dp)
         call file%refuse_unknown()
     end subroutine read_settings
 
@@ -150,49 +113,41 @@ contains
         if (status < 0) call file%add_fault(0, '&friction: ' // friction_message(status))
     end subroutine try_props
 
-    !> Velocity and normal traction over time. One value stands for all pieces.
-    subroutine read_drive(file, normal_traction, drive)
+    !> How the block starts.
+    subroutine read_initial(file, run)
         type(namelist_file), intent(inout) :: file
-        real(dp), intent(in) :: normal_traction   !! where &drive gives none [F/L^2]
-        type(programme), intent(out) :: drive
-        character(len=*), parameter :: group = 'drive'
-        real(dp), allocatable :: velocity(:), normal(:), duration(:)
-        integer :: faults_before, n, i
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'initial'
+        real(dp) :: mu_k, mu_s, mu_0
 
-        faults_before = size(file%faults)
-        call file%require(group, 'velocity')
-        call file%get_reals(group, 'velocity', velocity, any_number())
-        call file%get_reals(group, 'duration', duration, above(0.0_dp))
-        call file%get_reals(group, 'normal', normal, at_least(0.0_dp))
-        if (size(file%faults) > faults_before .or. size(velocity) == 0) return
-        if (size(normal) == 0) normal = [normal_traction]
-        n = max(size(velocity), size(normal), size(duration))
-        call check_length('velocity', size(velocity))
-        call check_length('normal', size(normal))
-        if (size(duration) /= n .and. n > 1) then
-            call file%reject(group, 'duration', 'must have ' // counted(n) &
-                // ', one for each piece')
-        end if
-        if (size(file%faults) > faults_before) return
-
-        if (size(velocity) < n) velocity = [(velocity(1), i = 1, n)]
-        if (size(normal) < n) normal = [(normal(1), i = 1, n)]
-        drive%velocity = velocity
-        drive%normal = normal
-        drive%start = [0.0_dp, (sum(duration(:i)), i = 1, n - 1)]
-
-    contains
-
-        subroutine check_length(key, length)
-            character(len=*), intent(in) :: key
-            integer, intent(in) :: length
-
-            if (length == n .or. (length == 1 .and. size(duration) == n)) return
-            call file%reject(group, key, 'must have one value or ' // counted(n) &
-                // ', as many as the other lists')
-        end subroutine check_length
-
-    end subroutine read_drive
+        run%initial%any_given = file%has_group(group)
+        if (.not. run%initial%any_given) return
+        mu_s = run%props(4)
+        mu_k = run%props(5)
+        mu_0 = run%props(9)
+        associate (start => run%initial)
+            call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=mu_0)
+            call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
+            call file%get_real(group, 'displacement', start%displacement, any_number(), &
+                default=0.0_dp)
+            call file%get_real(group, 'velocity', start%velocity, any_number(), default=0.0_dp)
+            call file%get_real(group, 'spring_force', start%spring_force, any_number(), &
+                default=0.0_dp)
+            start%spring_given = file%given(group, 'spring_force')
+            if (start%mu < mu_k .or. start%mu > mu_s) call file%reject(group, 'mu', &
+                'must be from mu_k to mu_s')
+            if (run%mass <= 0.0_dp) then
+                if (start%spring_given) call file%reject(group, 'spring_force', &
+                    'needs a mass > 0: without, it is the friction force')
+                if (file%given(group, 'velocity')) call file%reject(group, 'velocity', &
+                    'needs a mass > 0')
+            end if
+            if (.not. allocated(run%drive%normal)) return
+            if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
+                call file%reject(group, 'r', 'must be 0 where the normal traction starts at 0')
+            end if
+        end associate
+    end subroutine read_initial
 
     subroutine read_time(file, run)
         type(namelist_file), intent(inout) :: file
@@ -203,15 +158,19 @@ contains
 
         faults_before = size(file%faults)
         call file%get_real(group, 't_end', run%t_end, above(0.0_dp))
-        call file%get_real(group, 'dt', run%dt, above(0.0_dp))
-        call file%get_real(group, 'beta', run%beta, between(0.01_dp, 1.0_dp), default=0.25_dp)
-        call file%get_real(group, 'gamma', run%gamma, between(0.5_dp, 1.0_dp), default=0.5_dp)
-        call file%get_real(group, 'tolerance', run%tolerance, above(0.0_dp), default=1.0e-10_dp)
-        call file%get_integer(group, 'max_iterations', run%max_iterations, &
-            between(1.0_dp, 1.0e6_dp), default=25)
+        run%adaptive = file%given(group, 'rtol')
+        call read_method(file, run)
+        if (run%adaptive) then
+            call read_adaptive(file, run)
+        else
+            call file%get_real(group, 'dt', run%dt, above(0.0_dp))
+            if (file%given(group, 'dt_min')) call file%reject(group, 'dt_min', 'needs rtol')
+            if (file%given(group, 'dt_max')) call file%reject(group, 'dt_max', 'needs rtol')
+        end if
         run%n_steps = 0
         if (size(file%faults) > faults_before .or. .not. run%dt > 0.0_dp) return
         if (run%dt > run%t_end) call file%reject(group, 'dt', 'must not exceed t_end')
+        if (run%adaptive) return
         if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) then
             call file%reject(group, 'dt', 'makes more steps up to t_end than can be counted')
         end if
@@ -222,14 +181,46 @@ contains
                                                                                          ! short
     end subroutine read_time
 
-    pure function counted(n) result(text)
-        integer, intent(in) :: n
-        character(len=:), allocatable :: text
-        character(len=20) :: buffer
+    !> Newmark's or the generalised-alpha method, and Newton's.
+    subroutine read_method(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'time'
 
-        write (buffer, '(i0, a)') n, ' value'
-        text = trim(buffer)
-        if (n /= 1) text = text // 's'
-    end function counted
+        call file%get_real(group, 'beta', run%beta, between(0.01_dp, 1.0_dp), default=0.25_dp)
+        call file%get_real(group, 'gamma', run%gamma, between(0.5_dp, 1.0_dp), &
+            default=merge(0.5_dp, 1.0_dp, run%mass > 0.0_dp))
+        run%rho_infinity = -1.0_dp
+        if (file%given(group, 'rho_infinity')) then
+            call file%get_real(group, 'rho_infinity', run%rho_infinity, between(0.0_dp, 1.0_dp))
+            if (file%given(group, 'beta')) call file%reject(group, 'beta', &
+                'follows from rho_infinity: give one of them')
+            if (file%given(group, 'gamma')) call file%reject(group, 'gamma', &
+                'follows from rho_infinity: give one of them')
+            if (run%mass <= 0.0_dp) call file%reject(group, 'rho_infinity', 'needs a mass > 0')
+        end if
+        call file%get_real(group, 'tolerance', run%tolerance, above(0.0_dp), default=1.0e-10_dp)
+        call file%get_integer(group, 'max_iterations', run%max_iterations, &
+            between(1.0_dp, 1.0e6_dp), default=25)
+    end subroutine read_method
+
+    !> Steps that the error chooses.
+    subroutine read_adaptive(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'time'
+
+        call file%get_real(group, 'rtol', run%rtol, between(1.0e-12_dp, 0.1_dp))
+        call file%get_real(group, 'dt_max', run%dt_max, above(0.0_dp), default=run%t_end)
+        call file%get_real(group, 'dt_min', run%dt_min, above(0.0_dp), &
+            default=1.0e-12_dp * run%t_end)
+        call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
+            default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
+        if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
+        run%order = 1
+        if (size(run%props) > 9) then
+            if (run%props(10) > 0.0_dp) run%order = 2
+        end if
+    end subroutine read_adaptive
 
 end module run_settings

@@ -1,36 +1,21 @@
 !> Runs the slider through its programme: steps in time, rows on disk, events found, energy booked.
 module simulation
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_snap_back, statev_slip
+    use checkpoint, only : snapshot, write_checkpoint
+    use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
+        statev_slip
+    use platform, only : interrupted, seconds
     use progress_bar, only : progress
     use recorder, only : csv_recorder
+    use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use slider_system, only : energy_balance, initial_state, slider, slider_state
-    use slip_events, only : event_finder, moment, slip_event
-    use time_integrator, only : newmark, step_report
+    use slider_system, only : initial_state, place, slider, slider_state
+    use slip_events, only : moment, slip_event, turning_point
+    use time_integrator, only : step_report
     implicit none
     private
 
-    public :: event_totals, outcome, simulate
-
-    !> Sums over the events of one piece of the programme.
-    type :: event_totals
-        integer :: events = 0, recurrences = 0
-        real(dp) :: period = 0.0_dp, force_drop = 0.0_dp   !! sums; see `recurrences` and `events`
-        real(dp) :: peak_velocity = 0.0_dp
-    end type event_totals
-
-    !> What a run has come to.
-    type :: outcome
-        character(len=:), allocatable :: failure   !! empty if the run reached its end
-        integer :: steps = 0                       !! taken
-        integer :: iterations = 0, most_iterations = 0
-        integer :: snap_backs = 0                  !! steps that saw several equilibria
-        real(dp) :: time = 0.0_dp                  !! reached [T]
-        real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
-        type(energy_balance) :: energy
-        type(event_totals), allocatable :: pieces(:)
-    end type outcome
+    public :: event_totals, outcome, simulate, start_run
 
     !> A fall of the spring force counts as a slip event from this part of the static friction force
     !> on.
@@ -38,56 +23,77 @@ module simulation
 
 contains
 
-    !> `failure` of the outcome says when and why, if the run ends before its time.
-    subroutine simulate(run, records, show_progress, result)
+    !> `failure` of the outcome says when and why, if the run ends before its time. With a name for
+    !> checkpoints it leaves one now and then, and when it is interrupted; from that it can go on.
+    subroutine simulate(run, records, show_progress, result, checkpoint_name, from)
         type(settings), intent(in) :: run
         type(csv_recorder), intent(inout) :: records
         logical, intent(in) :: show_progress
         type(outcome), intent(out) :: result
-        type(slider) :: system
-        type(newmark) :: method
-        type(slider_state) :: old, new
+        character(len=*), intent(in), optional :: checkpoint_name
+        type(snapshot), intent(in), optional :: from   !! an interrupted run of the same settings
+        type(snapshot) :: live
+        type(slider_state) :: new
         type(step_report) :: report
-        type(event_finder) :: finder
         type(progress) :: bar
-        real(dp) :: time
-        integer :: k, status
+        real(dp) :: last_checkpoint
+        logical :: complete
 
-        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
-        method = newmark(run%beta, run%gamma, run%tolerance, run%max_iterations)
-        finder%threshold = smallest_drop * run%area * run%props(4) * maxval(run%drive%normal)
-        allocate (result%pieces(size(run%drive%start)))
-        result%failure = ''
-
-        call initial_state(system, 1, run%drive%normal(1), old, status)
-        if (status < 0) result%failure = 'at the start: ' // friction_message(status)
-        new = old
-        call record(old)
-        call bar%begin(show_progress)
-        do k = 1, run%n_steps
-            if (len(result%failure) > 0) exit
-            time = min(k * run%dt, run%t_end)
-            call method%step(system, run%drive%position(time), &
-                run%drive%normal(run%drive%piece(time)), time - (k - 1) * run%dt, old, new, report)
+        if (present(from)) then
+            live = from
+        else
+            call start_run(run, live)
+            call record(live%state)
+        end if
+        new = live%state
+        last_checkpoint = seconds()
+        call bar%begin(show_progress, live%state%time / run%t_end)
+        do while (.not. live%steps%finished(live%state))
+            if (len(live%result%failure) > 0) exit
+            call live%steps%take_step(live%state, new, report, complete)
             if (report%status < 0) then
-                call fail(friction_message(report%status))
+                call fail(why_stopped(run, report%status))
                 exit
             end if
-            new%time = time
-            if (report%status == friction_snap_back) result%snap_backs = result%snap_backs + 1
-            result%steps = k
-            result%iterations = result%iterations + report%iterations
-            result%most_iterations = max(result%most_iterations, report%iterations)
-            call system%account(old, new, result%energy)
-            if (mod(k, run%interval) == 0 .or. k == run%n_steps) call record(new)
-            call watch(new)
-            old = new
-            call bar%show(real(k, dp) / run%n_steps)
+            if (report%status == friction_snap_back) live%result%snap_backs = &
+                live%result%snap_backs + 1
+            live%result%steps = live%result%steps + 1
+            if (complete) live%rows_due = live%rows_due + 1
+            if (run%adaptive) then
+                call live%steps%system%account(live%state, new, live%result%energy, &
+                    live%steps%middle)
+            else
+                call live%steps%system%account(live%state, new, live%result%energy)
+            end if
+            if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
+            if (live%rows_due == run%interval) live%rows_due = 0
+            call watch(live%state, new)
+            live%state = new
+            call bar%show(live%state%time / run%t_end)
+            if (present(checkpoint_name)) call keep()
         end do
         call bar%clear()
-        result%time = old%time
+        result = live%result
+        result%iterations = live%steps%iterations
+        result%most_iterations = live%steps%most_iterations
+        result%rejected = live%steps%rejected
+        result%time = live%state%time
 
     contains
+
+        !> A checkpoint, if it is time for one.
+        subroutine keep()
+            integer, parameter :: steps_between_looks = 64
+
+            if (interrupted()) then
+                call write_checkpoint(checkpoint_name, run, live, records)
+                call fail('interrupted; stickslip run with --resume goes on from here')
+            else if (mod(live%result%steps, steps_between_looks) == 0) then
+                if (seconds() - last_checkpoint < run%checkpoint) return
+                call write_checkpoint(checkpoint_name, run, live, records)
+                last_checkpoint = seconds()
+            end if
+        end subroutine keep
 
         subroutine record(state)
             type(slider_state), intent(in) :: state
@@ -96,31 +102,88 @@ contains
             if (records%failed()) call fail('cannot write the time series (disk full?)')
         end subroutine record
 
-        subroutine watch(state)
+        !> Looks for slip events, at the end of a step and where the force turns within.
+        subroutine watch(before, now)
+            type(slider_state), intent(in) :: before, now
+            type(moment) :: turn
+            logical :: found
+            integer :: i
+
+            i = run%drive%piece(before%time)
+            call turning_point(seen(before, i), seen(now, i), turn, found)
+            if (found .and. now%time <= run%drive%next_start(before%time)) call look(turn)
+            call look(seen(now, i))
+            live%result%peak_velocity = max(live%result%peak_velocity, maxval(now%v))
+        end subroutine watch
+
+        pure function seen(state, i) result(now)
             type(slider_state), intent(in) :: state
+            integer, intent(in) :: i   !! piece of the programme
+            type(moment) :: now
+
+            now = moment(state%time, state%spring(1), state%statev(statev_slip, 1), state%v(1), &
+                run%stiffness * (run%drive%drive_velocity(state%time, i) - state%v(1)))
+        end function seen
+
+        subroutine look(now)
+            type(moment), intent(in) :: now
             type(slip_event) :: event
             logical :: found
+            integer :: i
 
-            result%peak_velocity = max(result%peak_velocity, maxval(state%v))
-            call finder%look(moment(state%time, state%spring(1), state%statev(statev_slip, 1), &
-                state%v(1)), event, found)
+            call live%finder%look(now, event, found)
             if (.not. found) return
-            call add_event(result%pieces(run%drive%piece(event%onset)), event, &
-                run%drive%start(run%drive%piece(event%onset)))
+            i = min(run%drive%piece(event%onset), run%drive%listed)
+            call add_event(live%result%pieces(i), event, run%drive%start(i))
+            live%result%onsets = [live%result%onsets, event%onset]
             call records%write_event(event, run%area)
             if (records%failed()) call fail('cannot write the events (disk full?)')
-        end subroutine watch
+        end subroutine look
 
         subroutine fail(why)
             character(len=*), intent(in) :: why
-            character(len=80) :: place
+            character(len=80) :: where
 
-            write (place, '(a, es13.6, a, i0, a)') 'at time ', min(k * run%dt, run%t_end), &
-                ', step ', k, ': '
-            result%failure = trim(place) // ' ' // why
+            write (where, '(a, es13.6, a, i0, a)') 'at time ', new%time, ', step ', &
+                live%result%steps + 1, ': '
+            live%result%failure = trim(where) // ' ' // why
         end subroutine fail
 
     end subroutine simulate
+
+    !> A run before its first step.
+    subroutine start_run(run, live)
+        type(settings), intent(in) :: run
+        type(snapshot), intent(out) :: live
+        type(slider) :: system
+        integer :: status
+
+        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
+        live%finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
+        allocate (live%result%pieces(run%drive%listed), live%result%onsets(0))
+        live%result%failure = ''
+        call initial_state(system, 1, run%drive%normal_traction(0.0_dp, 1), live%state, status)
+        if (status < 0) live%result%failure = 'at the start: ' // friction_message(status)
+        call place(system, run%initial, live%state)
+        live%result%energy%at_start = system%stored(live%state)
+        call live%steps%begin(run, system, live%state)
+    end subroutine start_run
+
+    !> What stands behind a step that cannot be taken.
+    pure function why_stopped(run, status) result(why)
+        type(settings), intent(in) :: run
+        integer, intent(in) :: status
+        character(len=:), allocatable :: why
+
+        why = friction_message(status)
+        if (status /= friction_no_convergence) return
+        if (run%mass <= 0.0_dp) then
+            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
+                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
+        else if (run%adaptive) then
+            why = 'not within the tolerance by steps as short as dt_min'
+        end if
+    end function why_stopped
 
     !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time
     !> that began in the piece before says nothing about either.

@@ -8,11 +8,12 @@
 module slider_system
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, statev_dissipation, &
-        statev_size, statev_u_et
+        statev_mu, statev_r, statev_size, statev_u_et
     implicit none
     private
 
-    public :: energy_balance, friction_forces, initial_state, slider, slider_state
+    public :: apply_normal_traction, energy_balance, friction_forces, initial_state, &
+        initial_values, place, slider, slider_state
 
     !> What stays.
     type :: slider
@@ -21,7 +22,19 @@ module slider_system
     contains
         procedure :: penetration_step
         procedure :: account
+        procedure :: stored
     end type slider
+
+    !> How a block starts, if not at rest on a virgin contact with a slack spring.
+    type :: initial_values
+        logical :: any_given = .false.
+        real(dp) :: mu = 0.0_dp                !! friction coefficient [-]
+        real(dp) :: r = 0.0_dp                 !! similarity ratio; the friction opposes +x [-]
+        real(dp) :: displacement = 0.0_dp      !! [L]
+        real(dp) :: velocity = 0.0_dp          !! [L/T]
+        logical :: spring_given = .false.      !! otherwise the block starts in equilibrium
+        real(dp) :: spring_force = 0.0_dp      !! [F]
+    end type initial_values
 
     !> What moves.
     type :: slider_state
@@ -36,6 +49,7 @@ module slider_system
 
     !> Where the work of the drive has gone [F L].
     type :: energy_balance
+        real(dp) :: at_start = 0.0_dp   !! held at the start, in all forms
         real(dp) :: drive_work = 0.0_dp
         real(dp) :: kinetic = 0.0_dp, spring = 0.0_dp, contact = 0.0_dp   !! held now
         real(dp) :: damped = 0.0_dp, dissipated = 0.0_dp                  !! gone
@@ -66,6 +80,37 @@ contains
         call friction_forces(system, virgin, -normal / system%props(2), zero, 0.0_dp, &
             state%statev, state%friction, tangent, status)
     end subroutine initial_state
+
+    !> Puts the block where the initial values say.
+    pure subroutine place(system, values, state)
+        type(slider), intent(in) :: system
+        type(initial_values), intent(in) :: values
+        type(slider_state), intent(inout) :: state   !! as `initial_state` left it
+
+        if (.not. values%any_given) return
+        state%x = values%displacement
+        state%v = values%velocity
+        state%statev(statev_mu, :) = values%mu
+        state%statev(statev_r, :) = values%r
+        state%friction = system%area * values%r * values%mu * state%normal
+        state%statev(statev_u_et, :) = values%r * values%mu * state%normal / system%props(3)
+        state%spring = state%friction + system%damping * state%v
+        if (values%spring_given) state%spring = values%spring_force
+        state%drive = state%x(1) + state%spring(1) / system%stiffness
+        if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
+            - state%friction) / system%mass
+    end subroutine place
+
+    !> Energy that a state holds: of the motion, of the springs, of the contact [F L].
+    pure function stored(self, state) result(energy)
+        class(slider), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        real(dp) :: energy
+
+        energy = 0.5_dp * self%mass * sum(state%v**2) + 0.5_dp * sum(state%spring**2) &
+            / self%stiffness + 0.5_dp * self%area * self%props(3) &
+            * sum(state%statev(statev_u_et, :)**2)
+    end function stored
 
     !> Change of u_n that brings the normal traction from `old` to `new`.
     pure function penetration_step(self, old, new) result(du_n)
@@ -105,16 +150,46 @@ contains
         end do
     end subroutine friction_forces
 
-    !> Books the step from `old` to `new`: works by the mean force over the step.
-    pure subroutine account(self, old, new, energy)
+    !> A sudden change of the normal traction, at one moment of time.
+    pure subroutine apply_normal_traction(system, normal, state)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: normal   !! afterwards [F/L^2]
+        type(slider_state), intent(inout) :: state
+        real(dp) :: old(size(state%statev, 1), size(state%x)), zero(size(state%x)), &
+            tangent(size(state%x))
+        integer :: status
+
+        if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
+        zero = 0.0_dp
+        old = state%statev
+        call friction_forces(system, old, system%penetration_step(state%normal, normal), zero, &
+            0.0_dp, state%statev, state%friction, tangent, status)
+        state%normal = normal
+        if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
+            - state%friction) / system%mass
+    end subroutine apply_normal_traction
+
+    !> Books the step from `old` to `new`: works by the mean force over the step, or by Simpson's
+    !> rule if the state half-way is known.
+    pure subroutine account(self, old, new, energy, middle)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: old, new
         type(energy_balance), intent(inout) :: energy
+        type(slider_state), intent(in), optional :: middle
 
-        energy%drive_work = energy%drive_work &
-            + 0.5_dp * sum(old%spring + new%spring) * (new%drive - old%drive)
-        energy%damped = energy%damped &
-            + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
+        if (present(middle)) then
+            energy%drive_work = energy%drive_work + (sum(old%spring) &
+                * (4.0_dp * middle%drive - 3.0_dp * old%drive - new%drive) &
+                + 4.0_dp * sum(middle%spring) * (new%drive - old%drive) + sum(new%spring) &
+                * (old%drive - 4.0_dp * middle%drive + 3.0_dp * new%drive)) / 6.0_dp
+            energy%damped = energy%damped + self%damping * (new%time - old%time) &
+                * sum(old%v**2 + 4.0_dp * middle%v**2 + new%v**2) / 6.0_dp
+        else
+            energy%drive_work = energy%drive_work &
+                + 0.5_dp * sum(old%spring + new%spring) * (new%drive - old%drive)
+            energy%damped = energy%damped &
+                + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
+        end if
         energy%kinetic = 0.5_dp * self%mass * sum(new%v**2)
         energy%spring = 0.5_dp * sum(new%spring**2) / self%stiffness
         energy%contact = 0.5_dp * self%area * self%props(3) * sum(new%statev(statev_u_et, :)**2)
@@ -126,8 +201,8 @@ contains
         class(energy_balance), intent(in) :: self
         real(dp) :: rest
 
-        rest = self%drive_work - self%kinetic - self%spring - self%contact - self%damped &
-            - self%dissipated
+        rest = self%at_start + self%drive_work - self%kinetic - self%spring - self%contact &
+            - self%damped - self%dissipated
     end function unbalanced
 
 end module slider_system

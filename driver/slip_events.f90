@@ -6,7 +6,7 @@ module slip_events
     implicit none
     private
 
-    public :: event_finder, moment, slip_event
+    public :: event_finder, moment, slip_event, turning_point
 
     !> What the finder looks at in one instant.
     type :: moment
@@ -14,6 +14,7 @@ module slip_events
         real(dp) :: force = 0.0_dp      !! of the drive spring [F]
         real(dp) :: slip = 0.0_dp       !! accumulated [L]
         real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
+        real(dp) :: rate = 0.0_dp       !! of the force [F/T]
     end type moment
 
     type :: slip_event
@@ -40,6 +41,33 @@ module slip_events
     end type event_finder
 
 contains
+
+    !> The moment between two others at which the force turns, by cubic interpolation.
+    pure subroutine turning_point(a, b, between, found)
+        type(moment), intent(in) :: a, b
+        type(moment), intent(out) :: between
+        logical, intent(out) :: found
+        real(dp) :: dt, c0, c1, c2, root, s
+
+        found = a%rate * b%rate < 0.0_dp
+        if (.not. found) return
+        dt = b%time - a%time
+        c0 = dt * a%rate   ! d(force)/ds = c0 + c1 s + c2 s^2 for s = 0 to 1
+        c1 = 6.0_dp * (b%force - a%force) - dt * (4.0_dp * a%rate + 2.0_dp * b%rate)
+        c2 = 3.0_dp * dt * (a%rate + b%rate) - 6.0_dp * (b%force - a%force)
+        root = sqrt(max(0.0_dp, c1**2 - 4.0_dp * c0 * c2))
+        ! the one root in (0, 1), without cancellation
+        if (c0 * sign(1.0_dp, c1) > 0.0_dp) then
+            s = -0.5_dp * (c1 + sign(root, c1)) / c2
+        else
+            s = -2.0_dp * c0 / (c1 + sign(root, c1))
+        end if
+        s = min(1.0_dp, max(0.0_dp, s))
+        between%time = a%time + s * dt
+        between%force = a%force + s * (c0 + s * (0.5_dp * c1 + s * c2 / 3.0_dp))
+        between%slip = a%slip + s * (b%slip - a%slip)
+        between%velocity = a%velocity + s * (b%velocity - a%velocity)
+    end subroutine turning_point
 
     !> Takes in the next instant. An event is known once the force has risen again.
     pure subroutine look(self, now, event, found)

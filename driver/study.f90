@@ -1,14 +1,15 @@
 !> The program's two verbs: check an input file, and run it.
 module study
-    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64, output_unit
+    use checkpoint, only : read_checkpoint, snapshot
     use command_line, only : command
     use namelist_input, only : namelist_file, read_namelist_file
     use picture, only : draw_picture
-    use platform, only : make_directory
+    use platform, only : make_directory, remove_file, watch_for_interrupts
     use recorder, only : csv_recorder
     use run_settings, only : read_settings, settings
-    use simulation, only : outcome, simulate
-    use summary, only : print_summary
+    use simulation, only : outcome, simulate, start_run
+    use summary, only : print_event_times, print_summary
     use sweep_settings, only : read_sweep, sweep_plan
     implicit none
     private
@@ -47,10 +48,13 @@ contains
             return
         end if
         exit_status = exit_done
+        if (wanted%verb /= 'check') return
         if (swept) then
             write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', size(plan%runs), &
                 ' combinations'
-        else if (wanted%verb == 'check') then
+        else if (run%adaptive) then
+            write (output_unit, '(2a)') wanted%input, ': valid, adaptive steps'
+        else
             write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', run%n_steps, ' steps'
         end if
     end subroutine check_input
@@ -62,7 +66,10 @@ contains
         type(settings) :: run
         type(csv_recorder) :: records
         type(outcome) :: result
+        type(snapshot) :: from
         character(len=:), allocatable :: problem, base
+        integer(int64) :: bytes(2)
+        integer :: rows
 
         call check_input(wanted, run, exit_status)
         if (exit_status /= exit_done) return
@@ -74,17 +81,34 @@ contains
                 wanted%output, "'"
             return
         end if
-        call records%start(base // '.csv', base // '_events.csv')
+        if (wanted%resume) then
+            call start_run(run, from)
+            call read_checkpoint(base // '.checkpoint', run, from, rows, bytes, problem)
+            if (len(problem) > 0) then
+                write (error_unit, '(2a)') 'stickslip: cannot resume: ', problem
+                return
+            end if
+            call records%go_on(base // '.csv', base // '_events.csv', rows, bytes)
+        else
+            call records%start(base // '.csv', base // '_events.csv')
+        end if
         if (records%failed()) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
             return
         end if
 
-        call simulate(run, records, .not. wanted%quiet, result)
+        call watch_for_interrupts()
+        if (wanted%resume) then
+            call simulate(run, records, .not. wanted%quiet, result, base // '.checkpoint', from)
+        else
+            call simulate(run, records, .not. wanted%quiet, result, base // '.checkpoint')
+        end if
         call records%finish()
         if (records%failed() .and. len(result%failure) == 0) result%failure = &
             'at its end: cannot write the last rows (disk full?)'
         if (.not. wanted%quiet) call print_summary(run, result)
+        if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
+        if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
         exit_status = exit_done
         if (len(result%failure) > 0) then
             write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': the run failed ', &
@@ -96,5 +120,30 @@ contains
         call draw_picture(wanted%output, wanted%stem, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_input
+
+    !> A second run, at a tenth of the tolerance or half of the step, that leaves no files: how far
+    !> its events are from those of the first is about the error of these.
+    subroutine verify_events(run, result)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(settings) :: tighter
+        type(outcome) :: reference
+        type(csv_recorder) :: nowhere
+
+        tighter = run
+        if (run%adaptive) then
+            tighter%rtol = 0.1_dp * run%rtol
+        else
+            tighter%dt = 0.5_dp * run%dt
+        end if
+        call nowhere%start('/dev/null', '/dev/null')
+        call simulate(tighter, nowhere, .false., reference)
+        call nowhere%finish()
+        if (len(reference%failure) > 0) then
+            write (error_unit, '(2a)') 'stickslip: the tighter run failed ', reference%failure
+        else
+            call print_event_times(result%onsets, reference%onsets)
+        end if
+    end subroutine verify_events
 
 end module study

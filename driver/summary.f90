@@ -6,7 +6,7 @@ module summary
     implicit none
     private
 
-    public :: print_summary
+    public :: print_event_times, print_summary
 
 contains
 
@@ -24,6 +24,8 @@ contains
         write (output_unit, '(2a, a, i0)') 'Newton iterations  ', &
             trim(per_step(result%iterations, result%steps)), ' a step, most ', &
             result%most_iterations
+        if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
+            result%rejected
         if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
             result%snap_backs, &
             ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
@@ -34,6 +36,19 @@ contains
         if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
         call print_energy(result)
     end subroutine print_summary
+
+    !> How far the events of a run are from those of a tighter one.
+    subroutine print_event_times(onsets, tighter)
+        real(dp), intent(in) :: onsets(:), tighter(:)   !! [T]
+        real(dp) :: apart(min(size(onsets), size(tighter)))
+
+        if (size(onsets) /= size(tighter)) write (output_unit, '(a, i0, a, i0)') &
+            'events             ', size(onsets), '; by the tighter run ', size(tighter)
+        if (size(apart) == 0) return
+        apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
+        write (output_unit, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
+            ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'
+    end subroutine print_event_times
 
     pure function per_step(total, steps) result(text)
         integer, intent(in) :: total, steps
@@ -94,6 +109,8 @@ contains
 
         associate (e => result%energy)
             write (output_unit, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
+            if (abs(e%at_start) > 0.0_dp) write (output_unit, '(a, es14.6)') &
+                '  less the start   ', -e%at_start
             write (output_unit, '(a, es14.6)') '  kinetic          ', e%kinetic
             write (output_unit, '(a, es14.6)') '  spring           ', e%spring
             write (output_unit, '(a, es14.6)') '  contact, elastic ', e%contact

@@ -127,7 +127,7 @@ contains
         if (jobs == 0) i = cores()
         allocate (children(i), combination(i))
         next = 1
-        call bar%begin(show_progress)
+        call bar%begin(show_progress, 0.0_dp)
         do
             do i = 1, size(children)
                 if (.not. children(i)%running()) call give_work(i)

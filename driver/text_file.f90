@@ -3,6 +3,8 @@
 module text_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
         c_ptr, c_size_t
+    use, intrinsic :: iso_fortran_env, only : int64
+    use platform, only : truncate_file
     implicit none
     private
 
@@ -13,9 +15,10 @@ module text_file
     type :: output_file
         private
         type(c_ptr) :: stream = c_null_ptr
+        integer(int64), public :: bytes = 0   !! written so far
         logical, public :: failed = .false.   !! a line could not be written, or the file not opened
     contains
-        procedure :: create, write_line, flush_lines, finish
+        procedure :: create, go_on, write_line, flush_lines, finish
     end type output_file
 
     interface
@@ -61,6 +64,22 @@ contains
         self%failed = .not. c_associated(self%stream)
     end subroutine create
 
+    !> Opens a file that is there, and goes on behind its first `bytes`; what follows them is lost.
+    subroutine go_on(self, name, bytes)
+        class(output_file), intent(inout) :: self
+        character(len=*), intent(in) :: name
+        integer(int64), intent(in) :: bytes
+        integer(int64) :: found
+
+        inquire (file=name, size=found)
+        self%failed = found < bytes
+        if (.not. self%failed) self%failed = .not. truncate_file(name, bytes)
+        if (self%failed) return
+        self%stream = c_fopen(name // c_null_char, 'a' // c_null_char)
+        self%failed = .not. c_associated(self%stream)
+        self%bytes = bytes
+    end subroutine go_on
+
     subroutine write_line(self, line)
         class(output_file), intent(inout) :: self
         character(len=*), intent(in) :: line
@@ -69,6 +88,7 @@ contains
         if (self%failed .or. .not. c_associated(self%stream)) return
         length = len(line, c_size_t) + 1_c_size_t
         self%failed = c_fwrite(line // new_line('a'), 1_c_size_t, length, self%stream) /= length
+        self%bytes = self%bytes + length
     end subroutine write_line
 
     !> Hands all lines to the operating system.

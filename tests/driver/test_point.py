@@ -271,16 +271,16 @@ class BadInput(Point):
         self.refused(text, "&point file = 'path.csv'", 'No such file', '&point substeps = 0: must be >= 1')
         self.refused(text.replace("'path.csv'", "''"), "&point file = '': must be text")
         for content, said in (
-                ('', ['must hold a line of names']),
-                ('time,u_n,u_t1\n', ['must hold a line of names']),
+                ('', ['is empty']),
+                ('time,u_n,u_t1\n', ['must hold rows of numbers']),
                 ('time,u_n,u_t1\n0,0,0\n', ['line 2: there is nothing but the starting point']),
                 ('t,u_n,t_n,x\n1,2,3,4\n', ["must have a column 'time'", "'u_n' or 't_n', and not both",
                                             "'u_t1' or 't_t1'", "unknown column 't'", "unknown column 'x'"]),
-                ('time,u_n,u_n\n', ["line 1: column 'u_n' is given twice"]),
+                ('time,u_n,u_n\n', ["column 'u_n' is given twice"]),
                 ('time,u_n,u_t1\n1,2\n1,2,3,4\n1,a,\n1,NaN,1-3\n',
-                 ['line 2: must have as many values', 'line 3: must have as many', 'line 4: u_n = a: must be',
-                  'line 4: u_t1 = : must be a number', 'line 5: u_n = NaN: must be finite',
-                  'line 5: u_t1 = 1-3: must be a number']),
+                 ['line 2: has not as many cells', 'line 3: has not as many', "line 4: u_n = 'a': must be",
+                  "line 4: u_t1 = '': must be a finite number", "line 5: u_n = 'NaN': must be a finite",
+                  "line 5: u_t1 = '1-3': must be a finite number"]),
                 ('time,u_n,u_t1\n-1,0,0\n3,0,0\n2,0,0\n', ['line 2: time must be >= 0',
                                                            'line 4: time must not go back']),
                 ('time,u_n,u_t1\n' + 5000 * '1,', ['line 2: the line is too long'])):

@@ -186,11 +186,11 @@ class BadInput(Program):
                      '&time max_iterations = 1e30', '&slider area: takes one value, not 2')
 
     def test_values_out_of_range(self):
-        self.refused(namelist({('slider', 'stiffness'): '-1', ('slider', 'mass'): '0',
+        self.refused(namelist({('slider', 'stiffness'): '-1', ('slider', 'mass'): '-1',
                                ('friction', 'alpha_t'): '0', ('friction', 'xi'): '-1',
                                ('time', 'beta'): '0', ('time', 'gamma'): '0.4',
                                ('output', 'interval'): '0', ('friction', 'law'): "'magic'"}),
-                     '&slider stiffness = -1: must be > 0', '&slider mass = 0: must be > 0',
+                     '&slider stiffness = -1: must be > 0', '&slider mass = -1: must be >= 0',
                      '&friction alpha_t = 0: must be > 0', '&friction xi = -1: must be >= 0',
                      '&time beta = 0: must be from', '&time gamma = 0.4: must be from',
                      '&output interval = 0: must be >= 1', "&friction law = 'magic': must be")

@@ -213,7 +213,7 @@ class BadInput(Sweep):
     def test_faults_of_the_run_itself_are_listed_once(self):
         said = self.refused(sweep('drive%velocity', '1, 2, 3', {('slider', 'mass'): '-1'},
                                   without=[('friction', 'm')]),
-                            '&slider mass = -1: must be > 0', '&friction m: is missing')
+                            '&slider mass = -1: must be >= 0', '&friction m: is missing')
         self.assertEqual(len(said.splitlines()), 2, said)
 
     def test_a_run_does_not_take_a_sweep(self):

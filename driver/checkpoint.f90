@@ -1,0 +1,135 @@
+!> Checkpoints: all that a run needs to go on as if it had never stopped, in one file that is
+!> written whole and then takes the place of the one before.
+module checkpoint
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use platform, only : rename_file
+    use recorder, only : csv_recorder
+    use run_outcome, only : outcome
+    use run_settings, only : settings
+    use slider_system, only : slider_state
+    use slip_events, only : event_finder
+    use step_control, only : stepper
+    implicit none
+    private
+
+    public :: read_checkpoint, snapshot, write_checkpoint
+
+    !> A run between two steps.
+    type :: snapshot
+        type(slider_state) :: state
+        type(stepper) :: steps
+        type(event_finder) :: finder
+        type(outcome) :: result
+        integer :: rows_due = 0   !! steps since the last row
+    end type snapshot
+
+    character(len=*), parameter :: first_words = 'stickslip checkpoint 1', last_words = 'end'
+
+contains
+
+    !> Leaves the checkpoint before in place if this one cannot be written.
+    subroutine write_checkpoint(name, run, now, records)
+        character(len=*), intent(in) :: name
+        type(settings), intent(in) :: run
+        type(snapshot), intent(in) :: now
+        type(csv_recorder), intent(inout) :: records
+        integer :: unit, status
+        integer(int64) :: expected, written
+        logical :: renamed
+
+        call records%flush_all()
+        if (records%failed()) return
+        open (newunit=unit, file=name // '.new', access='stream', form='unformatted', &
+            status='replace', action='write', iostat=status)
+        if (status /= 0) return
+        associate (x => now%state, s => now%steps, r => now%result)
+            write (unit, iostat=status) first_words, digest(run), size(x%x), size(r%pieces), &
+                size(r%onsets), x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, x%friction, &
+                x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, s%iterations, &
+                s%most_iterations, s%last_error, now%finder, r%steps, r%snap_backs, &
+                r%peak_velocity, r%energy, r%pieces, r%onsets, now%rows_due, records%rows, &
+                records%series%bytes, records%events%bytes, last_words
+        end associate
+        inquire (unit=unit, pos=expected)
+        close (unit)
+        inquire (file=name // '.new', size=written)
+        if (status == 0 .and. written == expected - 1) then
+            renamed = rename_file(name // '.new', name)
+        end if
+    end subroutine write_checkpoint
+
+    !> Fills a snapshot, allocated as at the start of the run, and the place of the files' ends.
+    !> `problem` says why the run cannot go on from there.
+    subroutine read_checkpoint(name, run, now, rows, bytes, problem)
+        character(len=*), intent(in) :: name
+        type(settings), intent(in) :: run
+        type(snapshot), intent(inout) :: now
+        integer, intent(out) :: rows             !! of the time series
+        integer(int64), intent(out) :: bytes(2)  !! of the time series, of the events
+        character(len=:), allocatable, intent(out) :: problem
+        character(len=len(first_words)) :: first
+        character(len=len(last_words)) :: last
+        integer(int64) :: seen
+        integer :: unit, status, blocks, pieces, events
+
+        rows = 0
+        bytes = 0
+        problem = ''
+        open (newunit=unit, file=name, access='stream', form='unformatted', status='old', &
+            action='read', iostat=status)
+        if (status /= 0) then
+            problem = 'there is no checkpoint ' // name
+            return
+        end if
+        read (unit, iostat=status) first, seen, blocks, pieces, events
+        if (status /= 0 .or. first /= first_words) then
+            problem = name // ' is no checkpoint of this version'
+        else if (seen /= digest(run) .or. blocks /= size(now%state%x) &
+            .or. pieces /= size(now%result%pieces)) then
+            problem = 'the input is not the one that wrote the checkpoint ' // name
+        else
+            deallocate (now%result%onsets)
+            allocate (now%result%onsets(events))
+            associate (x => now%state, s => now%steps, r => now%result)
+                read (unit, iostat=status) x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, &
+                    x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
+                    s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, &
+                    r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, now%rows_due, &
+                    rows, bytes, last
+            end associate
+            if (status /= 0 .or. last /= last_words) problem = name // ' is damaged'
+        end if
+        close (unit)
+    end subroutine read_checkpoint
+
+    !> A number that is another for other settings, as far as they change the results.
+    pure function digest(run) result(mixed)
+        type(settings), intent(in) :: run
+        integer(int64) :: mixed
+
+        mixed = 0
+        associate (d => run%drive, start => run%initial)
+            call mix([run%props, run%mass, run%stiffness, run%damping, run%area, run%t_end, &
+                run%dt, run%rtol, run%dt_min, run%dt_max, run%beta, run%gamma, run%rho_infinity, &
+                run%tolerance, real(run%max_iterations, dp), real(run%interval, dp), start%mu, &
+                start%r, start%displacement, start%velocity, start%spring_force])
+            call mix([d%start, d%travel, d%velocity, d%acceleration, d%normal, d%normal_rate, &
+                d%amplitude, d%frequency, d%phase])
+        end associate
+
+    contains
+
+        pure subroutine mix(numbers)
+            real(dp), intent(in) :: numbers(:)
+            integer :: i
+
+            do i = 1, size(numbers)
+                mixed = ieor(ishftc(mixed, 23), transfer(numbers(i), mixed))
+                mixed = ieor(mixed, shiftl(mixed, 13))
+                mixed = ieor(mixed, shiftr(mixed, 7))
+            end do
+        end subroutine mix
+
+    end function digest
+
+end module checkpoint

@@ -1,0 +1,31 @@
+!> What a run has come to.
+module run_outcome
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use slider_system, only : energy_balance
+    implicit none
+    private
+
+    public :: event_totals, outcome
+
+    !> Sums over the events of one piece of the programme.
+    type :: event_totals
+        integer :: events = 0, recurrences = 0
+        real(dp) :: period = 0.0_dp, force_drop = 0.0_dp   !! sums; see `recurrences` and `events`
+        real(dp) :: peak_velocity = 0.0_dp
+    end type event_totals
+
+    !> What a run has come to.
+    type :: outcome
+        character(len=:), allocatable :: failure   !! empty if the run reached its end
+        real(dp), allocatable :: onsets(:)         !! of the events [T]
+        integer :: steps = 0                       !! taken
+        integer :: iterations = 0, most_iterations = 0
+        integer :: rejected = 0                    !! steps tried in vain
+        integer :: snap_backs = 0                  !! steps that saw several equilibria
+        real(dp) :: time = 0.0_dp                  !! reached [T]
+        real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
+        type(energy_balance) :: energy
+        type(event_totals), allocatable :: pieces(:)
+    end type outcome
+
+end module run_outcome

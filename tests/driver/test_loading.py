@@ -1,0 +1,277 @@
+"""Loading programmes, the initial state, and the quasi-static mode, as a user meets them."""
+import math
+import unittest
+
+from test_program import Program, namelist
+
+
+class Columns(Program):
+    def run_columns(self, text):
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        rows = self.rows('case_out/case.csv')
+        return {key: [float(row[key]) for row in rows] for key in rows[0]}
+
+    def with_file(self, content, *changes):
+        (self.folder / 'load.csv').write_text(content)
+        return namelist({('drive', 'file'): "'load.csv'", **dict(changes)},
+                        without=[('drive', 'velocity')])
+
+
+class Programme(Columns):
+    def test_displacement_from_a_file_is_linear_between_its_rows(self):
+        run = self.run_columns(self.with_file('time,displacement\n0,5\n0.04,5.08\n0.06,5.0\n'))
+        for k, t in enumerate(run['time']):
+            expected = 2 * t if t <= 0.04 else max(0.08 - 4 * (t - 0.04), 0.0)
+            self.assertAlmostEqual(run['drive'][k], expected, delta=1e-12)
+
+    def test_velocity_from_a_file_is_linear_between_its_rows_and_goes_on(self):
+        run = self.run_columns(self.with_file('# ramp\ntime, velocity\r\n0, 1\n\n0.05, 3\n'))
+        for k, t in enumerate(run['time']):
+            ramp = min(t, 0.05)
+            self.assertAlmostEqual(run['drive'][k], ramp + 20 * ramp**2 + 3 * (t - ramp), delta=1e-12)
+
+    def test_file_is_found_beside_the_input_file(self):
+        (self.folder / 'deep').mkdir()
+        (self.folder / 'deep/load.csv').write_text('time,velocity\n0,1\n1,1\n')
+        (self.folder / 'deep/case.nml').write_text(
+            namelist({('drive', 'file'): "'load.csv'"}, without=[('drive', 'velocity')]))
+        self.assertEqual(self.run_program('check', 'deep/case.nml').returncode, 0)
+
+    def normal_traction(self, text):
+        """Sliding blocks show the normal traction: friction / (R mu)."""
+        run = self.run_columns(text)
+        return run['time'], [force / (r * mu) for force, r, mu
+                             in zip(run['friction_force'], run['R'], run['mu'])]
+
+    sliding = {('initial', 'r'): '1', ('initial', 'velocity'): '1', ('drive', 'velocity'): '1'}
+
+    def test_normal_traction_from_a_file_is_linear_between_its_rows(self):
+        text = self.with_file('time,velocity,normal\n0,1,10\n0.05,1,20\n', (('initial', 'r'), '1'),
+                              (('initial', 'velocity'), '1')).replace('normal_traction = 10', '')
+        for t, normal in zip(*self.normal_traction(text)):
+            self.assertAlmostEqual(normal, 10 + 200 * min(t, 0.05), delta=1e-10)
+
+    def test_normal_traction_ramps_to_each_value_within_its_duration(self):
+        text = namelist({**self.sliding, ('drive', 'normal'): '10, 20', ('drive', 'duration'): '0.02, 0.04',
+                         ('drive', 'normal_change'): "'ramp'"})
+        for t, normal in zip(*self.normal_traction(text)):
+            self.assertAlmostEqual(normal, 10 + 250 * min(max(t - 0.02, 0), 0.04), delta=1e-10)
+
+    def test_normal_traction_oscillates(self):
+        text = namelist({**self.sliding, ('drive', 'normal_amplitude'): '4',
+                         ('drive', 'normal_frequency'): '3', ('drive', 'normal_phase'): '0.5'})
+        for t, normal in zip(*self.normal_traction(text)):
+            self.assertAlmostEqual(normal, 10 + 4 * math.sin(6 * math.pi * t + 0.5), delta=1e-10)
+
+
+class InitialState(Columns):
+    def test_block_starts_as_told_and_in_equilibrium(self):
+        run = self.run_columns(namelist({('initial', 'mu'): '0.3', ('initial', 'r'): '0.5',
+                                         ('initial', 'displacement'): '2', ('initial', 'velocity'): '0.1'}))
+        self.assertEqual([run[key][0] for key in ('mu', 'R', 'displacement', 'velocity', 'acceleration')],
+                         [0.3, 0.5, 2.0, 0.1, 0.0])
+        self.assertAlmostEqual(run['friction_force'][0], 1.5, delta=1e-15)
+        self.assertAlmostEqual(run['spring_force'][0], 1.5 + 0.01 * 0.1, delta=1e-15)
+        self.assertAlmostEqual(run['friction_force'][1], 1.5, delta=0.2)   # the contact takes it up
+
+    def test_a_spring_force_out_of_balance_accelerates_the_block(self):
+        run = self.run_columns(namelist({('initial', 'spring_force'): '2'}))
+        self.assertAlmostEqual(run['acceleration'][0], 2000.0, delta=1e-9)
+
+    def test_a_block_in_steady_sliding_stays_in_it(self):
+        mu = (10 * 0.2 + 10 * 0.4) / 20
+        run = self.run_columns(namelist({('initial', 'mu'): repr(mu), ('initial', 'r'): '1',
+                                         ('initial', 'velocity'): '1', ('slider', 'damping'): '1',
+                                         ('time', 't_end'): '1'}))
+        self.assertLess(max(abs(v - 1) for v in run['velocity']), 1e-8)
+        self.assertLess(max(abs(m - mu) for m in run['mu']), 1e-8)
+
+    def test_energy_that_was_there_at_the_start_is_booked(self):
+        result = self.run_text(namelist({('initial', 'spring_force'): '2', ('time', 'dt'): '1e-5'}),
+                               '--no-plot')
+        unbalanced = float(result.stdout.split('unbalanced')[1].split()[0])
+        self.assertIn('less the start', result.stdout)
+        self.assertLess(abs(unbalanced), 1e-4)
+
+
+class QuasiStatic(Columns):
+    steady = {('slider', 'mass'): '0', ('slider', 'stiffness'): '100', ('friction', 'xi'): '1',
+              ('slider', 'damping'): '0', ('time', 't_end'): '10', ('time', 'dt'): '5e-3',
+              ('output', 'interval'): '10'}
+
+    def test_steady_sliding_settles_at_the_closed_form(self):
+        run = self.run_columns(namelist({**self.steady, ('drive', 'velocity'): '0.1'}))
+        mu = (10 * 0.1 * 0.2 + 0.4) / 2
+        self.assertAlmostEqual(run['mu'][-1], mu, delta=1e-6)
+        self.assertAlmostEqual(run['friction_force'][-1], 10 * mu, delta=1e-5)
+        self.assertAlmostEqual(run['velocity'][-1], 0.1, delta=1e-6)
+        self.assertEqual(max(run['acceleration']), 0.0)
+        for spring, friction in zip(run['spring_force'], run['friction_force']):
+            self.assertAlmostEqual(spring, friction, delta=1e-9 * (1 + abs(friction)))
+
+    def test_mu_recovers_in_a_hold_by_the_closed_form(self):
+        run = self.run_columns(namelist({**self.steady, ('drive', 'velocity'): '0.1, -20, 0',
+                                         ('drive', 'duration'): '4.99, 0.01, 10', ('time', 'dt'): '1e-3'}))
+        # unloaded by the drive's jump back, the block rests
+        start = min(k for k, t in enumerate(run['time']) if t >= 5.1)
+        for k in range(start, len(run['time'])):
+            t = run['time'][k] - run['time'][start]
+            self.assertAlmostEqual(run['mu'][k], 0.4 - (0.4 - run['mu'][start]) * math.exp(-t), delta=1e-4)
+
+    def test_velocity_step_relaxes_at_the_rate_of_the_closed_form(self):
+        # nearly rigid loading, so that the slip rate follows the drive at once
+        run = self.run_columns(namelist({**self.steady, ('drive', 'velocity'): '0.1, 0.2',
+                                         ('drive', 'duration'): '8, 10', ('slider', 'stiffness'): '1e5',
+                                         ('time', 't_end'): '9', ('time', 'dt'): '1e-3'}))
+        before, after, rate = (2 * 0.1 + 0.4) / 2, (10 * 0.2 * 0.2 + 0.4) / 3, 3.0
+        for k, t in enumerate(run['time']):
+            if t > 8.05:
+                expected = after + (before - after) * math.exp(-rate * (t - 8))
+                self.assertAlmostEqual(run['mu'][k], expected, delta=1e-3 * (before - after) + 2e-4)
+
+    def test_an_unstable_slider_says_so_and_when(self):
+        changes = {**self.steady, ('slider', 'stiffness'): '1', ('drive', 'velocity'): '1',
+                   ('time', 't_end'): '20'}
+        result = self.run_text(namelist(changes), '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r'the run failed at time  ?[\d.E+]+, step \d+: the slider is unstable')
+        self.assertGreater(len(self.rows('case_out/case.csv')), 10)
+
+    def test_stiffness_at_which_the_slider_becomes_unstable(self):
+        # theory.md, section 6, at mu_ss: unstable iff K k_t/(K + k_t) < A
+        a = 10 * 10 * ((10 * 0.1 * 0.2 + 0.4) / 2 - 0.2)
+        critical = 1000 * a / (1000 - a)
+        for factor, status in ((0.85, 1), (1.15, 0)):
+            changes = {**self.steady, ('drive', 'velocity'): '0.1',
+                       ('slider', 'stiffness'): repr(factor * critical),
+                       ('initial', 'mu'): '0.3001', ('initial', 'r'): '1', ('time', 't_end'): '40'}
+            self.assertEqual(self.run_text(namelist(changes), '--no-plot').returncode, status)
+
+
+class AdaptiveSteps(Columns):
+    def events_of(self, changes, without=()):
+        text = namelist({('time', 't_end'): '12', ('output', 'interval'): '1000', **changes}, without)
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertIn('rejected steps', result.stdout) if ('time', 'rtol') in changes else None
+        unbalanced = float(result.stdout.split('unbalanced')[1].split()[0])
+        return [float(row['onset']) for row in self.rows('case_out/case_events.csv')], unbalanced
+
+    def test_event_times_come_closer_to_the_truth_as_the_tolerance_tightens(self):
+        # an explicit Runge-Kutta 5(4) solution at rtol 1e-11 has its first two onsets here
+        truth = [3.987831136299, 7.132989343357]
+        error = {}
+        for rtol in ('1e-4', '1e-6', '1e-8'):
+            onsets, _ = self.events_of({('time', 'rtol'): rtol}, [('time', 'dt')])
+            error[rtol] = max(abs(a - b) for a, b in zip(onsets, truth))
+        self.assertLess(error['1e-6'], 0.5 * error['1e-4'])
+        self.assertLess(error['1e-8'], 0.3 * error['1e-6'])
+        self.assertLess(error['1e-8'], 2e-4)
+
+    def test_energy_balance_closes_with_the_tolerance(self):
+        rest = [abs(self.events_of({('time', 'rtol'): rtol}, [('time', 'dt')])[1])
+                for rtol in ('1e-5', '1e-7')]
+        self.assertLess(rest[1], 0.3 * rest[0])
+
+    def test_steps_end_where_pieces_of_the_programme_end(self):
+        run = self.run_columns(namelist({('drive', 'velocity'): '1, -2, 0', ('drive', 'duration'): '3*0.03',
+                                         ('time', 'rtol'): '1e-6'}, [('time', 'dt')]))
+        for t in (0.03, 0.06, 0.1):
+            self.assertLess(min(abs(t - time) for time in run['time']), 1e-15)
+
+    def test_steps_stay_within_their_bounds(self):
+        run = self.run_columns(namelist({('time', 'rtol'): '1e-3', ('time', 'dt_max'): '2e-3'}, [('time', 'dt')]))
+        steps = [b - a for a, b in zip(run['time'], run['time'][1:])]
+        self.assertLess(max(steps), 2.01e-3)
+        result = self.run_text(namelist({('time', 'rtol'): '1e-10', ('time', 'dt_min'): '1e-2',
+                                         ('time', 'dt'): '1e-2', ('time', 't_end'): '5'}), '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('steps as short as dt_min', result.stderr)
+
+    def test_opening_and_closing_are_met_exactly(self):
+        run = self.run_columns(namelist({('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5',
+                                         ('time', 'rtol'): '1e-4', ('time', 't_end'): '0.4'}, [('time', 'dt')]))
+        # 10 + 20 sin(10 pi t) = 0 at sin = -1/2
+        for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
+            self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
+
+    def test_quasi_static_steps_adapt_too(self):
+        changes = {**QuasiStatic.steady, ('drive', 'velocity'): '0.1', ('time', 'rtol'): '1e-6'}
+        run = self.run_columns(namelist(changes, [('time', 'dt')]))
+        self.assertAlmostEqual(run['mu'][-1], 0.3, delta=1e-5)
+
+    def test_numerical_damping_calms_the_contact(self):
+        rough = {}
+        for rho in ('1.0', '0.5'):
+            run = self.run_columns(namelist({('time', 't_end'): '4.8', ('time', 'dt'): '2e-3',
+                                             ('slider', 'damping'): '0', ('time', 'rho_infinity'): rho}))
+            late = [v for t, v in zip(run['time'], run['velocity']) if t > 4.5]
+            rough[rho] = max(late) - min(late)
+        self.assertLess(rough['0.5'], 0.5 * rough['1.0'])
+
+    def test_bad_keys_of_adaptive_steps_and_damping(self):
+        self.refused(namelist({('time', 'dt_min'): '1', ('time', 'dt_max'): '1'}),
+                     '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
+        self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
+                     '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
+        self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
+                               ('time', 'gamma'): '0.5', ('slider', 'mass'): '0'}),
+                     '&time rho_infinity = 1.5: must be from 0 to 1', '&time beta = 0.25: follows from rho',
+                     '&time gamma = 0.5: follows from rho', '&time rho_infinity = 1.5: needs a mass')
+
+
+class BadProgramme(Columns):
+    def test_files_that_are_no_programme(self):
+        for content, said in (
+                ('', 'is empty'),
+                ('time,velocity\n', 'less than two rows'),
+                ('time,speed\n0,1\n1,1\n', "line 1: column 'speed' is none of"),
+                ('time,velocity,time\n0,1,0\n1,1,1\n', "column 'time' is given twice"),
+                ('velocity,normal\n0,1\n1,1\n', "line 1: column 'time' is missing"),
+                ('time,normal\n0,1\n1,1\n', "one of the columns 'velocity' and 'displacement'"),
+                ('time,velocity\n0,1\n1\n', 'line 3: has not as many cells as the header'),
+                ('time,velocity\n0,1\n1,fast\n', "line 3: velocity = 'fast': must be a finite number"),
+                ('time,velocity\n0,1\nNaN,1\n', "line 3: time = 'NaN': must be a finite number"),
+                ('time,velocity\n0,1\n1,1e999\n', "line 3: velocity = '1e999'"),
+                ('time,velocity\n0,1\n1,\n', "line 3: velocity = ''"),
+                ('time,velocity\n0.5,1\n1,1\n', 'line 2: time must start at 0'),
+                ('time,velocity\n0,1\n1,1\n1,2\n', 'line 4: time must be larger'),
+                ('time,velocity,normal\n0,1,1\n1,1,-1\n', 'line 3: normal must be >= 0'),
+                ('time,velocity\n0,' + '1' * 5000 + '\n', 'line 2: the line is too long')):
+            self.refused(self.with_file(content), '&drive file', said)
+
+    def test_every_fault_of_a_file_is_listed_up_to_a_screenful(self):
+        result = self.run_text(self.with_file('time,velocity\n' + 'x,y\n' * 100), verb='check')
+        self.assertGreater(len(result.stderr.splitlines()), 15)
+        self.assertLess(len(result.stderr.splitlines()), 25)
+
+    def test_file_that_is_not_there_and_lists_beside_it(self):
+        self.refused(namelist({('drive', 'file'): "'none.csv'", ('drive', 'duration'): '1'}),
+                     '&drive velocity = 1: cannot stand beside file', '&drive duration = 1: cannot',
+                     "&drive file = 'none.csv'")
+        self.refused(namelist({('drive', 'file'): '12'}), '&drive file = 12: must be text in quotes')
+
+    def test_oscillation_and_changes(self):
+        self.refused(namelist({('drive', 'normal_amplitude'): '1'}), '&drive normal_frequency: is missing')
+        self.refused(namelist({('drive', 'normal_frequency'): '1', ('drive', 'normal_phase'): '1'}),
+                     '&drive normal_frequency = 1: needs a normal_amplitude', '&drive normal_phase = 1: needs')
+        self.refused(namelist({('drive', 'normal_amplitude'): '-1', ('drive', 'normal_frequency'): '0',
+                               ('drive', 'normal_change'): "'jump'"}),
+                     '&drive normal_amplitude = -1: must be >= 0', '&drive normal_frequency = 0: must be > 0',
+                     "&drive normal_change = 'jump': must be one of 'step', 'ramp'")
+
+    def test_initial_values_out_of_range(self):
+        self.refused(namelist({('initial', 'mu'): '0.1', ('initial', 'r'): '1.1',
+                               ('initial', 'velocity'): 'NaN', ('initial', 'speed'): '1'}),
+                     '&initial mu = 0.1: must be from mu_k to mu_s', '&initial r = 1.1: must be from 0 to 1',
+                     '&initial velocity = NaN: must be finite', '&initial speed: unknown key')
+        self.refused(namelist({('initial', 'spring_force'): '1', ('slider', 'mass'): '0',
+                               ('initial', 'velocity'): '1'}),
+                     '&initial spring_force = 1: needs a mass', '&initial velocity = 1: needs a mass')
+        self.refused(namelist({('initial', 'r'): '1', ('drive', 'normal'): '0, 1',
+                               ('drive', 'duration'): '1, 1'}), '&initial r = 1: must be 0')
+
+
+if __name__ == '__main__':
+    unittest.main()

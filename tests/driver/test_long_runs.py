@@ -1,0 +1,130 @@
+"""Runs that stop before their end, and go on: checkpoints, --resume, interrupts; and --verify."""
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+from test_program import PROGRAM, Program, namelist
+
+FIXED = namelist({('time', 't_end'): '40', ('time', 'dt'): '2e-4', ('output', 'interval'): '10',
+                  ('output', 'checkpoint'): '0.02'})
+ADAPTIVE = namelist({('time', 't_end'): '80', ('time', 'rtol'): '1e-6', ('output', 'interval'): '3',
+                     ('drive', 'velocity'): '1, 0.5, 2', ('drive', 'duration'): '31.7, 20, 100',
+                     ('drive', 'normal_amplitude'): '1', ('drive', 'normal_frequency'): '0.3',
+                     ('output', 'checkpoint'): '0.02'}, [('time', 'dt')])
+
+
+class LongRun(Program):
+    def start(self, *arguments):
+        return subprocess.Popen([PROGRAM, 'run', 'case.nml', '--no-plot', *arguments], cwd=self.folder,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def wait_for(self, name, size=1):
+        for _ in range(1000):
+            file = self.folder / name
+            if file.exists() and file.stat().st_size >= size:
+                return
+            time.sleep(0.01)
+        self.fail(f'{name} does not come')
+
+    def results(self, folder):
+        return [(self.folder / folder / name).read_bytes() for name in ('case.csv', 'case_events.csv')]
+
+    def whole_run(self, text):
+        (self.folder / 'case.nml').write_text(text)
+        begun = time.monotonic()
+        process = self.start('--output', 'whole')
+        summary = process.communicate(timeout=120)[0]
+        self.assertEqual(process.returncode, 0)
+        return summary, time.monotonic() - begun
+
+    def stop_and_go(self, text, stop, times):
+        """Stopped at random moments and resumed each time, a run leaves what an undisturbed one does."""
+        summary, seconds = self.whole_run(text)
+        chance = random.Random(20)
+        stopped = 0
+        arguments = ['--output', 'parts']
+        for _ in range(times):
+            process = self.start(*arguments)
+            self.wait_for('parts/case.csv', 100)   # it runs
+            time.sleep(chance.uniform(0.1, 0.4) * seconds)
+            process.send_signal(stop)
+            process.communicate(timeout=120)
+            stopped += process.returncode != 0
+            if process.returncode == 0:
+                break
+            if (self.folder / 'parts/case.checkpoint').exists():
+                arguments = ['--output', 'parts', '--resume']
+        self.assertGreater(stopped, 0)
+        if process.returncode != 0:
+            process = self.start(*arguments)
+            resumed, errors = process.communicate(timeout=120)
+            self.assertEqual((process.returncode, errors), (0, ''))
+            self.assertEqual(resumed, summary)
+        self.assertEqual(self.results('parts'), self.results('whole'))
+        self.assertFalse((self.folder / 'parts/case.checkpoint').exists())
+
+
+class StopAndGo(LongRun):
+    def test_killed_fixed_steps_resume_to_the_same_bytes(self):
+        self.stop_and_go(FIXED, signal.SIGKILL, 5)
+
+    def test_killed_adaptive_steps_resume_to_the_same_bytes(self):
+        self.stop_and_go(ADAPTIVE, signal.SIGKILL, 5)
+
+    def test_interrupted_steps_resume_to_the_same_bytes(self):
+        self.stop_and_go(ADAPTIVE, signal.SIGINT, 3)
+
+    def test_an_interrupt_says_so_and_leaves_whole_rows_and_a_checkpoint(self):
+        (self.folder / 'case.nml').write_text(FIXED.replace('0.02\n', '1e9\n').replace("t_end = 40", "t_end = 4e4"))
+        process = self.start()
+        self.wait_for('case_out/case.csv', 10000)
+        process.send_signal(signal.SIGINT)
+        errors = process.communicate(timeout=120)[1]
+        self.assertEqual(process.returncode, 1)
+        self.assertIn('interrupted; stickslip run with --resume', errors)
+        self.assertTrue((self.folder / 'case_out/case.checkpoint').exists())
+        lines = (self.folder / 'case_out/case.csv').read_text().splitlines()
+        self.assertEqual({len(line.split(',')) for line in lines}, {10})
+
+    def test_resuming_what_cannot_be_resumed_is_refused(self):
+        text = FIXED.replace('t_end = 40', 't_end = 4e4')
+        (self.folder / 'case.nml').write_text(text)
+        result = self.run_program('run', 'case.nml', '--resume')
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('there is no checkpoint', result.stderr)
+        process = self.start()
+        self.wait_for('case_out/case.checkpoint')
+        process.kill()
+        process.communicate()
+        kept = (self.folder / 'case_out/case.checkpoint').read_bytes()
+        rows = (self.folder / 'case_out/case.csv').read_bytes()
+        for change, said in ((text.replace('kappa = 10', 'kappa = 11'), 'the input is not the one'),
+                             (text, 'is damaged')):
+            (self.folder / 'case.nml').write_text(change)
+            if change == text:
+                (self.folder / 'case_out/case.checkpoint').write_bytes(kept[:-10])
+            result = self.run_program('run', 'case.nml', '--resume')
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(said, result.stderr)
+            self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), rows)
+
+    def test_bad_checkpoint_interval(self):
+        self.refused(namelist({('output', 'checkpoint'): '-1'}), '&output checkpoint = -1: must be >= 0')
+
+
+class Verify(Program):
+    def test_verify_tells_the_error_of_event_times(self):
+        truth = 3.987831136299   # an explicit Runge-Kutta 5(4) solution at rtol 1e-11
+        for change in ({('time', 'dt'): '1e-3'}, {('time', 'rtol'): '1e-5'}):
+            result = self.run_text(namelist({('time', 't_end'): '6', **change}), '--no-plot', '--verify')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            said = float(result.stdout.split('largest')[1].split(',')[0])
+            onset = float(self.rows('case_out/case_events.csv')[0]['onset'])
+            self.assertLess(abs(onset - truth), 10 * said)
+            self.assertGreater(abs(onset - truth), 0.1 * said)
+
+
+if __name__ == '__main__':
+    unittest.main()
