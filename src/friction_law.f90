@@ -34,6 +34,7 @@ module friction_law
         procedure(rest_interface), deferred :: rest
         procedure(slide_interface), deferred :: slide
         procedure :: weakening => never_weakens
+        procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
     end type law
 
@@ -103,6 +104,15 @@ contains
 
         bound = 0.0_wp
     end function never_weakens
+
+    !> Does the resistance depend on the slip rate, which an increment without time leaves
+    !> undefined? A law of which that is true overrides this.
+    pure function needs_no_time(self) result(needs)
+        class(law), intent(in) :: self
+        logical :: needs
+
+        needs = .false.
+    end function needs_no_time
 
     !> The equilibrium `trial - stiffness*slip = resistance(slip)` by a way of the law's own, where
     !> it has a fast one. It may give up (`solved` false): the return mapping's own search, slower

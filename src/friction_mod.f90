@@ -12,7 +12,12 @@ module friction_mod
     use friction_law, only : law
     use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
-        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back
+        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back, &
+        friction_zero_time_increment
+    use friction_coulomb_law, only : read_coulomb_law, coulomb_law
+    use friction_static_kinetic_law, only : read_static_kinetic_law, static_kinetic_law
+    use friction_rate_state_law, only : read_rate_state_law, rate_state_law
+    use friction_slip_weakening_law, only : read_slip_weakening_law, slip_weakening_law
     use friction_subloading_law, only : read_subloading_law, subloading_law
     implicit none
     private
@@ -21,12 +26,16 @@ module friction_mod
         friction_message, friction_version
     public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
-        friction_null_pointer, friction_ok, friction_snap_back
+        friction_null_pointer, friction_ok, friction_snap_back, friction_zero_time_increment
 
     character(len=*), parameter :: friction_version = '0.1.0'   !! semantic version of the library
 
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
+    integer, parameter, public :: law_coulomb = 2
+    integer, parameter, public :: law_static_kinetic = 3
+    integer, parameter, public :: law_rate_state = 4
+    integer, parameter, public :: law_slip_weakening = 5
 
     !> Material constants: places in `props` that all laws share.
     integer, parameter :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3, first_own_prop = 4
@@ -37,7 +46,7 @@ module friction_mod
     integer, parameter, public :: statev_u_n = 2           !! normal relative displacement [L]
     integer, parameter, public :: statev_u_et = 3   !! first elastic tangential displacement [L]
     integer, parameter, public :: statev_mu = 5            !! friction coefficient [-]
-    integer, parameter, public :: statev_r = 6   !! internal variable of the law, e.g. R [-]
+    integer, parameter, public :: statev_r = 6   !! internal variable of the law, e.g. R
     integer, parameter, public :: statev_slip = 7          !! accumulated slip [L]
     integer, parameter, public :: statev_dissipation = 8   !! accumulated dissipated energy per
                                                            !! area [F/L]
@@ -211,6 +220,10 @@ contains
         real(wp), intent(inout) :: traction(3), tangent(3, 3)
         integer, intent(out) :: status
         type(subloading_law) :: subloading
+        type(coulomb_law) :: coulomb
+        type(static_kinetic_law) :: static_kinetic
+        type(rate_state_law) :: rate_state
+        type(slip_weakening_law) :: slip_weakening
         integer(int64) :: seen
 
         status = friction_bad_size
@@ -233,6 +246,30 @@ contains
             if (status < 0) return
             call update_point(subloading, props, motion, n_tangential, statev, traction, tangent, &
                 status)
+        case (law_coulomb)
+            call read_coulomb_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                coulomb, status)
+            if (status < 0) return
+            call update_point(coulomb, props, motion, n_tangential, statev, traction, tangent, &
+                status)
+        case (law_static_kinetic)
+            call read_static_kinetic_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                static_kinetic, status)
+            if (status < 0) return
+            call update_point(static_kinetic, props, motion, n_tangential, statev, traction, &
+                tangent, status)
+        case (law_rate_state)
+            call read_rate_state_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                rate_state, status)
+            if (status < 0) return
+            call update_point(rate_state, props, motion, n_tangential, statev, traction, tangent, &
+                status)
+        case (law_slip_weakening)
+            call read_slip_weakening_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                slip_weakening, status)
+            if (status < 0) return
+            call update_point(slip_weakening, props, motion, n_tangential, statev, traction, &
+                tangent, status)
         case default
             status = friction_bad_law
         end select
@@ -271,6 +308,10 @@ contains
         case default
             return
         end select
+        if (.not. motion%dt > 0.0_wp) then
+            status = friction_zero_time_increment
+            if (surface%needs_time() .and. any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)) return
+        end if
 
         call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
             tangential=props(prop_alpha_t)), motion, old, new, traction, tangent, status)
