@@ -84,7 +84,7 @@ contains
         class(rate_state_law), intent(in) :: self
         type(law_state) :: state
 
-        state = law_state(mu=self%f0, r=self%theta_0)
+        state = law_state(mu=0.0_wp, r=self%theta_0)
     end function virgin
 
     !> The coefficient in the state is for the reader; it follows from theta and the slip rate.
@@ -111,7 +111,8 @@ contains
         type(law_state), intent(out) :: new
         real(wp), intent(out) :: strength
 
-        new = old
+        new%mu = 0.0_wp
+        new%r = old%r
         if (self%evolution == ageing) new%r = old%r + dt
         strength = 0.0_wp
     end subroutine rest
