@@ -310,7 +310,7 @@ contains
         end select
         if (.not. motion%dt > 0.0_wp) then
             status = friction_zero_time_increment
-            if (surface%needs_time() .and. any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)) return
+            if (surface%needs_time() .and. sheared(motion, old)) return
         end if
 
         call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
@@ -325,6 +325,20 @@ contains
         statev(statev_slip) = new%slip
         statev(statev_dissipation) = new%dissipation
     end subroutine update_point
+
+    !> Does the increment load a closed contact tangentially?
+    pure function sheared(motion, old)
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        logical :: sheared
+
+        sheared = any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)
+        if (motion%pressure_given) then
+            sheared = sheared .and. motion%pressure > 0.0_wp
+        else
+            sheared = sheared .and. old%u_n + motion%du(1) < 0.0_wp
+        end if
+    end function sheared
 
     !> Is every number finite and below 2**333 (1.7e100) in magnitude, so that products of three
     !> cannot overflow?

@@ -57,7 +57,6 @@ contains
         integer :: status
 
         if (.not. abs(statev(statev_status)) > 0.0_wp) return
-        statev(statev_u_et:statev_u_et + 1) = 0.0_wp
         call friction_tangential([0.0_wp, 0.0_wp], 0.0_wp, 0.0_wp, props, statev, tau, by_du, &
             by_p, status)
     end subroutine forget_elastic
