@@ -1,8 +1,7 @@
 !> What a run is told to do: the groups and keys of the input file, with their defaults and rules.
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_update, law_subloading, &
-        scheme_backward_euler, scheme_exact_rate, statev_size
+    use law_input, only : read_friction
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use slider_system, only : initial_values
@@ -68,50 +67,6 @@ contains
             default=60.0_dp)
         call file%refuse_unknown()
     end subroutine read_settings
-
-    !> Constants of the friction law, in the order of `props`.
-    subroutine read_friction(file, props)
-        type(namelist_file), intent(inout) :: file
-        real(dp), allocatable, intent(out) :: props(:)
-        character(len=*), parameter :: group = 'friction'
-        character(len=:), allocatable :: law, scheme
-        real(dp) :: alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0
-        integer :: faults_before, number
-
-        faults_before = size(file%faults)
-        call file%get_choice(group, 'law', law, ['subloading'], default='subloading')
-        call file%get_real(group, 'alpha_n', alpha_n, above(0.0_dp))
-        call file%get_real(group, 'alpha_t', alpha_t, above(0.0_dp))
-        call file%get_real(group, 'mu_s', mu_s, at_least(0.0_dp))
-        call file%get_real(group, 'mu_k', mu_k, at_least(0.0_dp))
-        call file%get_real(group, 'kappa', kappa, at_least(0.0_dp))
-        call file%get_real(group, 'xi', xi, at_least(0.0_dp))
-        call file%get_real(group, 'm', m, above(0.0_dp))
-        call file%get_real(group, 'mu_0', mu_0, at_least(0.0_dp), default=mu_s)
-        call file%get_choice(group, 'scheme', scheme, ['backward_euler', 'exact_rate    '], &
-            default='backward_euler')
-        number = scheme_backward_euler
-        if (scheme == 'exact_rate') number = scheme_exact_rate
-        props = [real(law_subloading, dp), alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0, &
-            real(number, dp)]
-        if (size(file%faults) > faults_before) return
-        if (mu_s < mu_k) call file%reject(group, 'mu_s', 'must be >= mu_k')
-        if (mu_0 < mu_k .or. mu_0 > mu_s) call file%reject(group, 'mu_0', &
-            'must be from mu_k to mu_s')
-        if (size(file%faults) == faults_before) call try_props(file, props)
-    end subroutine read_friction
-
-    !> The routine itself has the last word on its constants.
-    subroutine try_props(file, props)
-        type(namelist_file), intent(inout) :: file
-        real(dp), intent(in) :: props(:)
-        real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
-        integer :: status
-
-        statev = 0.0_dp
-        call friction_update([0.0_dp, 0.0_dp], 0.0_dp, props, statev, traction, tangent, status)
-        if (status < 0) call file%add_fault(0, '&friction: ' // friction_message(status))
-    end subroutine try_props
 
     !> How the block starts.
     subroutine read_initial(file, run)

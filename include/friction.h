@@ -22,7 +22,8 @@ enum friction_status {
     FRICTION_BAD_STATE = -5,       /* statev holds what no update wrote */
     FRICTION_NO_CONVERGENCE = -6,  /* no equilibrium found */
     FRICTION_BAD_NORMAL = -7,      /* the normal is not a unit vector */
-    FRICTION_NULL_POINTER = -8     /* a pointer argument is NULL */
+    FRICTION_NULL_POINTER = -8,    /* a pointer argument is NULL */
+    FRICTION_ZERO_TIME_INCREMENT = -9   /* the law depends on the slip rate and needs dtime > 0 */
 };
 
 /* Friction update of one contact point.
@@ -30,7 +31,8 @@ enum friction_status {
  *   du        increment of relative displacement, ndir numbers [L]
  *   dtime     increment of time, >= 0 [T]
  *   nprops    number of material constants
- *   props     number of the law (1 = subloading), alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m[, mu_0]
+ *   props     number of the law, alpha_n, alpha_t, then its own (docs/laws.md), e.g. of law 1, subloading:
+ *             mu_s, mu_k, kappa, xi, m[, mu_0]
  *   nstatv    number of state variables, 8 or more
  *   statev    state at the start in, at the end out; all zero = virgin:
  *             status (0 virgin, 1 stick, 2 slip, 3 open), u_n, u_et1, u_et2, mu, R, slip, dissipated energy

@@ -31,13 +31,16 @@ module friction_law
         !> Does the law follow the path within an increment? Then an increment that unloads before
         !> it loads again slides from the least share of the strength on its way: `r` at the start
         !> stands for that share, and the strength is proportional to it and to the pressure.
-        logical :: follows_path = .false.
+        !> Whoever makes a law for use says so (an initial value here would be stored at every call
+        !> for every law that there is).
+        logical :: follows_path
     contains
         procedure(virgin_interface), deferred :: virgin
         procedure(admits_interface), deferred :: admits
         procedure(rest_interface), deferred :: rest
         procedure(slide_interface), deferred :: slide
         procedure :: weakening => never_weakens
+        procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
         procedure :: start_rate => no_start_rate
     end type law
@@ -108,6 +111,15 @@ contains
 
         bound = 0.0_wp
     end function never_weakens
+
+    !> Does the resistance depend on the slip rate, which an increment without time leaves
+    !> undefined? A law of which that is true overrides this.
+    pure function needs_no_time(self) result(needs)
+        class(law), intent(in) :: self
+        logical :: needs
+
+        needs = .false.
+    end function needs_no_time
 
     !> The equilibrium `trial - stiffness*slip = resistance(slip)` by a way of the law's own, where
     !> it has a fast one. It may give up (`solved` false): the return mapping's own search, slower

@@ -12,7 +12,12 @@ module friction_mod
     use friction_law, only : law
     use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
-        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back
+        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back, &
+        friction_zero_time_increment
+    use friction_coulomb_law, only : read_coulomb_law, coulomb_law
+    use friction_static_kinetic_law, only : read_static_kinetic_law, static_kinetic_law
+    use friction_rate_state_law, only : read_rate_state_law, rate_state_law
+    use friction_slip_weakening_law, only : read_slip_weakening_law, slip_weakening_law
     use friction_subloading_exact_law, only : subloading_exact_law
     use friction_subloading_law, only : read_subloading_law, subloading_law
     implicit none
@@ -23,12 +28,16 @@ module friction_mod
     public :: update_arrays, update_arrays_batch   ! for the C interface
     public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
-        friction_null_pointer, friction_ok, friction_snap_back
+        friction_null_pointer, friction_ok, friction_snap_back, friction_zero_time_increment
 
     character(len=*), parameter :: friction_version = '0.1.0'   !! semantic version of the library
 
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
+    integer, parameter, public :: law_coulomb = 2
+    integer, parameter, public :: law_static_kinetic = 3
+    integer, parameter, public :: law_rate_state = 4
+    integer, parameter, public :: law_slip_weakening = 5
 
     !> Time integration of the subloading law: values of props(10).
     integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
@@ -44,7 +53,7 @@ module friction_mod
     integer, parameter, public :: statev_u_n = 2           !! normal relative displacement [L]
     integer, parameter, public :: statev_u_et = 3   !! first elastic tangential displacement [L]
     integer, parameter, public :: statev_mu = 5            !! friction coefficient [-]
-    integer, parameter, public :: statev_r = 6   !! internal variable of the law, e.g. R [-]
+    integer, parameter, public :: statev_r = 6   !! internal variable of the law, e.g. R
     integer, parameter, public :: statev_slip = 7          !! accumulated slip [L]
     integer, parameter, public :: statev_dissipation = 8   !! accumulated dissipated energy per
                                                            !! area [F/L]
@@ -252,6 +261,10 @@ contains
         integer, intent(out) :: status
         type(subloading_law), target :: subloading
         type(subloading_exact_law), target :: exact
+        type(coulomb_law), target :: coulomb
+        type(static_kinetic_law), target :: static_kinetic
+        type(rate_state_law), target :: rate_state
+        type(slip_weakening_law), target :: slip_weakening
         class(law), pointer :: surface
         integer :: scheme
         integer(int64) :: seen
@@ -269,28 +282,42 @@ contains
         if (.not. all_usable(nprops, props)) return
         if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
 
+        scheme = scheme_backward_euler
         select case (whole_number(props(prop_law)))
         case (law_subloading)
             call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
                 subloading, status)
-            if (status < 0) return
-            scheme = scheme_backward_euler
             if (nprops >= prop_scheme) scheme = whole_number(props(prop_scheme))
             select case (scheme)
             case (scheme_backward_euler)
                 surface => subloading
             case (scheme_exact_rate)
                 exact%subloading_law = subloading
-                exact%follows_path = .true.
                 surface => exact
             case default
                 status = friction_bad_property
-                return
             end select
+        case (law_coulomb)
+            call read_coulomb_law(nprops - first_own_prop + 1, props(first_own_prop), coulomb, &
+                status)
+            surface => coulomb
+        case (law_static_kinetic)
+            call read_static_kinetic_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                static_kinetic, status)
+            surface => static_kinetic
+        case (law_rate_state)
+            call read_rate_state_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                rate_state, status)
+            surface => rate_state
+        case (law_slip_weakening)
+            call read_slip_weakening_law(nprops - first_own_prop + 1, props(first_own_prop), &
+                slip_weakening, status)
+            surface => slip_weakening
         case default
             status = friction_bad_law
-            return
         end select
+        if (status < 0) return
+        surface%follows_path = scheme == scheme_exact_rate
         call update_point(surface, props, motion, n_tangential, statev, traction, tangent, status)
     end subroutine advance
 
@@ -327,6 +354,10 @@ contains
         case default
             return
         end select
+        if (.not. motion%dt > 0.0_wp) then
+            status = friction_zero_time_increment
+            if (surface%needs_time() .and. sheared(motion, old)) return
+        end if
 
         call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
             tangential=props(prop_alpha_t)), motion, old, new, traction, tangent, status)
@@ -340,6 +371,20 @@ contains
         statev(statev_slip) = new%slip
         statev(statev_dissipation) = new%dissipation
     end subroutine update_point
+
+    !> Does the increment load a closed contact tangentially?
+    pure function sheared(motion, old)
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        logical :: sheared
+
+        sheared = any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)
+        if (motion%pressure_given) then
+            sheared = sheared .and. motion%pressure > 0.0_wp
+        else
+            sheared = sheared .and. old%u_n + motion%du(1) < 0.0_wp
+        end if
+    end function sheared
 
     !> Is every number finite and below 2**333 (1.7e100) in magnitude, so that products of three
     !> cannot overflow?

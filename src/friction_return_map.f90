@@ -54,7 +54,9 @@ contains
         if (.not. found) low = high
         call bracketed_newton(surface, this, low, high, answer, status)
         if (status /= friction_ok) return
-        call next_root(surface, this, answer%slip * (1.0_wp + apart), low, high, found)
+        ! Close to zero slip, two roots also have to differ by more than round-off of the trial.
+        call next_root(surface, this, answer%slip + max(apart * answer%slip, &
+            100.0_wp * epsilon(apart) * trial / stiffness), low, high, found)
         if (found) status = friction_snap_back
     end subroutine return_map
 

@@ -42,7 +42,7 @@ subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
         if (nfdir == 2) call rotate_tangential(drot, state)
-        if (all(abs(tau) <= 0.0_wp)) call forget_elastic(state)
+        if (all(abs(tau) <= 0.0_wp)) call forget_elastic(props, state)
         start = state
         call friction_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
     end if

@@ -2,7 +2,8 @@
 module friction_host
     use friction_kinds, only : wp
     use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
-        friction_snap_back, friction_update, statev_r, statev_status, statev_u_et, statev_u_n
+        friction_snap_back, friction_tangential, friction_update, statev_status, statev_u_et, &
+        statev_u_n
     implicit none
     private
 
@@ -47,12 +48,17 @@ contains
         statev(statev_u_et:statev_u_et + 1) = matmul(drot, statev(statev_u_et:statev_u_et + 1))
     end subroutine rotate_tangential
 
-    !> The contact was open since the last call: what was stored elastically is gone.
-    pure subroutine forget_elastic(statev)
+    !> The contact was open since the last call: what was stored elastically is gone. How the law
+    !> takes that is its own affair; constants or a state that it refuses are left for the update.
+    pure subroutine forget_elastic(props, statev)
+        real(wp), intent(in) :: props(:)       !! constants of the friction routine
         real(wp), intent(inout) :: statev(:)   !! state at the start of the increment
+        real(wp) :: tau(2), by_du(2, 2), by_p(2)
+        integer :: status
 
-        statev(statev_u_et:statev_u_et + 1) = 0.0_wp
-        statev(statev_r) = 0.0_wp
+        if (.not. abs(statev(statev_status)) > 0.0_wp) return
+        call friction_tangential([0.0_wp, 0.0_wp], 0.0_wp, 0.0_wp, props, statev, tau, by_du, &
+            by_p, status)
     end subroutine forget_elastic
 
     !> One point of an interface whose host counts compression and penetration positive (Abaqus).

@@ -22,6 +22,22 @@ GOOD = {
 }
 
 
+SPRINGS = {'alpha_n': '1000', 'alpha_t': '1000'}
+LAWS = {
+    'coulomb': {'mu': '0.3'},
+    'static_kinetic': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.1'},
+    'rate_and_state': {'a': '0.01', 'b': '0.015', 'd_c': '0.01', 'v0': '0.001', 'f0': '0.6'},
+    'slip_weakening': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.05'},
+}
+
+
+def law_namelist(law, **changes):
+    """A good input under one of LAWS, with some of its constants changed."""
+    friction = ', '.join(f'{key} = {value}' for key, value in
+                         {'law': f"'{law}'", **SPRINGS, **LAWS[law], **changes}.items())
+    return namelist(without=[('friction', None)]) + f'&friction {friction} /\n'
+
+
 def namelist(changes=(), without=()):
     """A good input with keys changed, {(group, key): text}, and groups or keys left out."""
     groups = {group: dict(keys) for group, keys in GOOD.items()}
@@ -159,6 +175,65 @@ class GoodInput(Program):
         result = self.run_program('--version')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         self.assertRegex(result.stdout, r'^stickslip \d+\.\d+\.\d+\n$')
+
+
+class Laws(Program):
+    def slide(self, law, **changes):
+        """Rows of a run in which the block comes to slide, as numbers."""
+        text = law_namelist(law, **changes).replace('t_end = 0.1', 't_end = 9')
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        rows = [{key: float(value) for key, value in row.items()}
+                for row in self.rows('case_out/case.csv')]
+        self.assertGreater(rows[-1]['slip'], 0.5)
+        return rows, list(zip(rows, rows[1:]))
+
+    def test_coulomb_friction_is_constant_while_it_slides(self):
+        for old, new in self.slide('coulomb')[1]:
+            if new['slip'] > old['slip']:
+                self.assertAlmostEqual(abs(new['friction_force']), 3.0, delta=1e-12)
+
+    def test_static_kinetic_friction_depends_on_the_slip_rate(self):
+        for old, new in self.slide('static_kinetic')[1]:
+            if new['slip'] > old['slip']:
+                rate = (new['slip'] - old['slip']) / (new['time'] - old['time'])
+                self.assertAlmostEqual(new['mu'], 0.2 + 0.2 * math.exp(-0.1 * rate), delta=1e-9)
+
+    def test_slip_weakening_friction_depends_on_the_slip(self):
+        for row in self.slide('slip_weakening')[0]:
+            self.assertAlmostEqual(row['mu'], max(0.2, 0.4 - 0.2 * row['slip'] / 0.05), delta=1e-9)
+
+    def test_rate_and_state_friction_depends_on_the_slip_rate_and_its_state(self):
+        for evolution in ('ageing', 'slip'):
+            for old, new in self.slide('rate_and_state', evolution=f"'{evolution}'")[1]:
+                slip, dt = new['slip'] - old['slip'], new['time'] - old['time']
+                if slip < 1e-6:   # cancellation
+                    continue
+                x = slip / 0.01
+                if evolution == 'ageing':
+                    theta = old['R'] * math.exp(-x) - dt * math.expm1(-x) / x
+                else:
+                    theta = old['R'] * (dt / (x * old['R']))**-math.expm1(-x)
+                self.assertAlmostEqual(new['R'] / theta, 1.0, delta=1e-6)
+                mu = 0.01 * math.asinh(slip / dt / 0.002
+                                       * math.exp((0.6 + 0.015 * math.log(theta / 10)) / 0.01))
+                self.assertAlmostEqual(new['mu'], mu, delta=1e-8)
+
+    def test_constants_of_another_law_are_unknown_keys(self):
+        for law in LAWS:
+            self.refused(law_namelist(law, xi='1'), '&friction xi: unknown key')
+        self.refused(namelist({('friction', 'mu'): '0.3'}), '&friction mu: unknown key')
+
+    def test_constants_left_out_or_out_of_range_are_all_named(self):
+        for law, constants in LAWS.items():
+            self.refused(law_namelist(law, **{key: '-1' for key in constants}),
+                         *(f'&friction {key} = -1' for key in constants))
+            without = namelist(without=[('friction', None)]) + f"&friction law = '{law}' /\n"
+            self.refused(without, *(f'&friction {key}: is missing' for key in constants))
+        self.refused(law_namelist('slip_weakening', mu_s='0.1'), '&friction mu_s = 0.1: must be >= mu_k')
+        self.refused(law_namelist('rate_and_state', evolution="'growing'", theta_0='0'),
+                     "&friction evolution = 'growing': must be one of 'ageing', 'slip'",
+                     '&friction theta_0 = 0: must be > 0')
 
 
 class BadInput(Program):
@@ -339,6 +414,19 @@ class ShippedInputs(Program):
         last = self.rows('slow_steady_out/slow_steady.csv')[-1]
         self.assertAlmostEqual(float(last['mu']), (10 * 0.1 * 0.2 + 1 * 0.4) / (10 * 0.1 + 1), delta=1e-6)
         self.assertAlmostEqual(float(last['velocity']), 0.1, delta=1e-6)
+
+    def test_rate_and_state_is_unstable_below_its_critical_stiffness_and_steady_above(self):
+        self.shipped('rate_and_state')
+        events = self.events('rate_and_state')
+        self.assertGreater(len(events), 2)
+        for event in events:
+            self.assertGreater(event['peak_velocity'], 10.0)
+        text = (INPUTS / 'rate_and_state.nml').read_text()
+        result = self.run_text(text.replace('stiffness = 1.0 ', 'stiffness = 10.0 '), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        last = self.rows('case_out/case.csv')[-1]
+        self.assertAlmostEqual(float(last['velocity']), 0.1, delta=1e-6)
+        self.assertAlmostEqual(float(last['mu']), 0.6 - 0.005 * math.log(100), delta=1e-6)
 
     def test_period_and_drop_fall_with_the_drive_velocity(self):
         table = self.shipped('velocity_steps').split('peak velocity\n')[-1].splitlines()[:4]

@@ -4,13 +4,36 @@ module contact_paths
     implicit none
     private
 
-    public :: path_increment, rotation
+    public :: path_increment, path_law, rotation
 
     integer, parameter, public :: path_length = 60
     real(dp), parameter, public :: path_props(9) = [1.0_dp, 1.0e3_dp, 8.0e2_dp, 0.45_dp, 0.25_dp, &
         8.0_dp, 0.2_dp, 60.0_dp, 0.4_dp]
 
+    integer, parameter, public :: path_laws = 5
+
 contains
+
+    !> Constants of each law.
+    pure function path_law(law) result(props)
+        integer, intent(in) :: law   !! number of the law, 1 to path_laws
+        real(dp), allocatable :: props(:)
+
+        props = path_props(1:3)
+        props(1) = law
+        select case (law)
+        case (2)
+            props = [props, 0.4_dp]
+        case (3)
+            props = [props, 0.45_dp, 0.25_dp, 20.0_dp]
+        case (4)
+            props = [props, 0.01_dp, 0.012_dp, 1.0e-3_dp, 1.0e-2_dp, 0.4_dp]
+        case (5)
+            props = [props, 0.45_dp, 0.25_dp, 1.0e-3_dp]
+        case default
+            props = path_props
+        end select
+    end function path_law
 
     !> Pressed, sheared, reversed, unloaded, re-stuck, opened, closed and sheared again; differs a
     !> little from point to point. Normal displacement > 0 opens.

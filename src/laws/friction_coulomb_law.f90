@@ -1,0 +1,81 @@
+!> Coulomb friction with a constant coefficient:
+!>
+!>     resistance = mu p
+!>
+!> Nothing evolves; the internal variable stays 0.
+module friction_coulomb_law
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state
+    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    implicit none
+    private
+
+    public :: coulomb_law, read_coulomb_law
+
+    type, extends(law) :: coulomb_law
+        real(wp) :: mu   !! friction coefficient, >= 0 [-]
+    contains
+        procedure :: virgin
+        procedure :: admits
+        procedure :: rest
+        procedure :: slide
+    end type coulomb_law
+
+contains
+
+    !> The law from its constant `mu`.
+    pure subroutine read_coulomb_law(n, constants, surface, status)
+        integer, intent(in) :: n                     !! number of constants, 1 or more
+        real(wp), intent(in) :: constants(n)         !! finite
+        type(coulomb_law), intent(out) :: surface    !! the law, if the status is ok
+        integer, intent(out) :: status               !! ok, bad size, or bad property
+
+        status = friction_bad_size
+        if (n < 1) return
+        surface%mu = constants(1)
+        status = friction_bad_property
+        if (surface%mu < 0.0_wp) return
+        status = friction_ok
+    end subroutine read_coulomb_law
+
+    pure function virgin(self) result(state)
+        class(coulomb_law), intent(in) :: self
+        type(law_state) :: state
+
+        state = law_state(mu=self%mu, r=0.0_wp)
+    end function virgin
+
+    !> The coefficient in the state is for the reader; a host may change `mu` on the way.
+    pure function admits(self, state) result(valid)
+        class(coulomb_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        logical :: valid
+
+        valid = state%mu >= 0.0_wp .and. .not. abs(state%r) > 0.0_wp
+    end function admits
+
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(coulomb_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+
+        new = self%virgin()
+        strength = self%mu * pressure
+    end subroutine rest
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(coulomb_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+
+        new = self%virgin()
+        resistance = self%mu * pressure
+        d_slip = 0.0_wp
+        d_pressure = self%mu
+    end subroutine slide
+
+end module friction_coulomb_law

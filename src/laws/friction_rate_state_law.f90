@@ -1,0 +1,334 @@
+!> Rate-and-state friction, regularised (Dieterich 1979, Ruina 1983, Rice et al. 2001):
+!>
+!>     resistance = mu p,   mu = a asinh(e^X),   X = ln(v/(2 v0)) + (f0 + b ln(v0 theta/d_c))/a
+!>
+!> with v = slip/dt and the state variable theta, a time, as internal variable. It ages or slips,
+!>
+!>     ageing law:  theta_dot = 1 - v theta/d_c
+!>     slip law:    theta_dot = -(v theta/d_c) ln(v theta/d_c)
+!>
+!> integrated exactly for a constant v in the increment, with x = slip/d_c:
+!>
+!>     ageing law:  theta = theta_n e^-x + dt (1 - e^-x)/x
+!>     slip law:    ln theta = ln theta_n + (1 - e^-x) (ln(dt/x) - ln theta_n)
+!>
+!> There is no yield point: under any traction the surface creeps, if only by 1e-50 of d_c. Slips
+!> that small are the reason why the arithmetic is in logarithms. Below 1e-100 d_c the resistance is
+!> taken as proportional to the slip, so that it starts from zero and every number stays in range.
+module friction_rate_state_law
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state, sliding
+    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    implicit none
+    private
+
+    public :: rate_state_law, read_rate_state_law
+
+    integer, parameter :: ageing = 0, slipping = 1   !! values of the constant `evolution`
+
+    type, extends(law) :: rate_state_law
+        real(wp) :: a         !! direct effect, > 0 [-]
+        real(wp) :: b         !! evolution effect, >= 0 [-]
+        real(wp) :: d_c       !! slip over which the state evolves, > 0 [L]
+        real(wp) :: v0        !! reference slip rate, > 0 [L/T]
+        real(wp) :: f0        !! friction coefficient of steady sliding at v0, >= 0 [-]
+        integer :: evolution  !! how theta evolves: one of the two above
+        real(wp) :: theta_0   !! theta of a virgin point, > 0 [T]
+    contains
+        procedure :: virgin
+        procedure :: admits
+        procedure :: rest
+        procedure :: slide
+        procedure :: weakening
+        procedure :: needs_time
+        procedure :: solve
+    end type rate_state_law
+
+    real(wp), parameter :: least_slip = 1.0e-100_wp   !! in units of d_c; see above
+    real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
+
+contains
+
+    !> The law from its constants `a, b, d_c, v0, f0[, evolution[, theta_0]]`.
+    pure subroutine read_rate_state_law(n, constants, surface, status)
+        integer, intent(in) :: n                       !! number of constants, 5 or more
+        real(wp), intent(in) :: constants(n)           !! finite
+        type(rate_state_law), intent(out) :: surface   !! the law, if the status is ok
+        integer, intent(out) :: status                 !! ok, bad size, or bad property
+
+        status = friction_bad_size
+        if (n < 5) return
+        surface%a = constants(1)
+        surface%b = constants(2)
+        surface%d_c = constants(3)
+        surface%v0 = constants(4)
+        surface%f0 = constants(5)
+        status = friction_bad_property
+        if (surface%a <= 0.0_wp .or. surface%b < 0.0_wp .or. surface%d_c <= 0.0_wp) return
+        if (surface%v0 <= 0.0_wp .or. surface%f0 < 0.0_wp) return
+        surface%evolution = ageing
+        if (n > 5) then
+            if (abs(constants(6) - slipping) <= 0.0_wp) then
+                surface%evolution = slipping
+            else if (abs(constants(6) - ageing) > 0.0_wp) then
+                return
+            end if
+        end if
+        surface%theta_0 = surface%d_c / surface%v0
+        if (n > 6) surface%theta_0 = constants(7)
+        if (surface%theta_0 <= 0.0_wp) return
+        status = friction_ok
+    end subroutine read_rate_state_law
+
+    pure function virgin(self) result(state)
+        class(rate_state_law), intent(in) :: self
+        type(law_state) :: state
+
+        state = law_state(mu=0.0_wp, r=self%theta_0)
+    end function virgin
+
+    !> The coefficient in the state is for the reader; it follows from theta and the slip rate.
+    pure function admits(self, state) result(valid)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        logical :: valid
+
+        valid = state%mu >= 0.0_wp .and. state%r > 0.0_wp
+    end function admits
+
+    pure function needs_time(self) result(needs)
+        class(rate_state_law), intent(in) :: self
+        logical :: needs
+
+        needs = .true.
+    end function needs_time
+
+    !> A surface without traction does not creep: it ages, or by the slip law it stays as it is.
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+
+        new%mu = 0.0_wp
+        new%r = old%r
+        if (self%evolution == ageing) new%r = old%r + dt
+        strength = 0.0_wp
+    end subroutine rest
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+        real(wp) :: s, least, ln_theta, by_ln_slip, x, part
+
+        least = least_slip * self%d_c
+        s = max(slip, least)
+        call evolve(self, s, dt, old%r, new%r, ln_theta, by_ln_slip)
+        x = direct_exponent(self, s, dt, ln_theta)
+        new%mu = self%a * asinh_exp(x)
+        d_slip = pressure * slope_asinh_exp(x) * ((self%a + self%b * by_ln_slip) / s)
+        if (slip < least) then
+            part = slip / least
+            d_slip = pressure * new%mu / least
+            new%mu = part * new%mu
+        end if
+        d_pressure = new%mu
+        resistance = new%mu * pressure
+    end subroutine slide
+
+    !> theta after a slip, and how it depends on that.
+    pure subroutine evolve(self, slip, dt, theta_n, theta, ln_theta, by_ln_slip)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: slip           !! > 0 [L]
+        real(wp), intent(in) :: dt             !! > 0 [T]
+        real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
+        real(wp), intent(out) :: theta         !! at its end, > 0 [T]
+        real(wp), intent(out) :: ln_theta      !! ln(theta)
+        real(wp), intent(out) :: by_ln_slip    !! d(ln theta)/d(ln slip)
+        real(wp) :: x, left, mean, pull
+
+        x = slip / self%d_c
+        left = exp(-x)
+        mean = mean_decay(x, left)
+        if (self%evolution == ageing) then
+            theta = max(theta_n * left + dt * mean, tiny(theta))
+            ln_theta = log(theta)
+            by_ln_slip = (dt * (left - mean) - x * theta_n * left) / theta
+        else
+            pull = log(dt) - log(x) - log(theta_n)
+            ln_theta = log(theta_n) + x * mean * pull
+            by_ln_slip = x * (left * pull - mean)
+            theta = max(exp(ln_theta), tiny(theta))
+        end if
+    end subroutine evolve
+
+    !> A rigorous bound: each factor of
+    !>
+    !>     -d(resistance)/d(slip) = p e^X/sqrt(1 + e^2X) (b e/d_c - a/slip),  e = -d(ln theta)/dx
+    !>
+    !> taken where it is largest; the first is below 1.
+    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: bound
+        real(wp) :: e
+
+        e = fastest_evolution(self, from, to, dt, old%r)
+        bound = max(0.0_wp, self%b * e / self%d_c - self%a / max(to, least_slip * self%d_c)) &
+            * pressure
+    end function weakening
+
+    !> Upper bound of -d(ln theta)/dx between two slips.
+    pure function fastest_evolution(self, from, to, dt, theta_n) result(e)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: from, to    !! slips, 0 <= from < to [L]
+        real(wp), intent(in) :: dt          !! > 0 [T]
+        real(wp), intent(in) :: theta_n     !! at the start of the increment, > 0 [T]
+        real(wp) :: e                       !! [-]
+        real(wp), parameter :: small = 1.0e-3_wp
+        real(wp) :: x1, x2, left1, left2, mean1, fall1, w
+
+        x1 = from / self%d_c
+        x2 = max(to / self%d_c, least_slip)
+        left1 = exp(-x1)
+        left2 = exp(-x2)
+        mean1 = mean_decay(x1, left1)
+        if (self%evolution == ageing) then
+            fall1 = 0.5_wp   ! how fast the mean decays: slower where x is larger
+            if (x1 > small) fall1 = (mean1 - left1) / x1
+            e = min(1.0_wp, (theta_n * left1 + dt * fall1) &
+                / max(theta_n * left2 + dt * mean_decay(x2, left2), tiny(dt)))
+        else
+            w = log(x2) + log(theta_n) - log(dt)
+            e = merge(left1, left2, w > 0.0_wp) * w + mean1
+        end if
+    end function fastest_evolution
+
+    !> Newton's method in ln(slip), bracketed, where there can be one equilibrium only.
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+        integer, parameter :: max_iterations = 100
+        real(wp) :: small, low, high, misfit, fall, step
+        integer :: iteration
+
+        solved = .false.
+        low = least_slip * self%d_c
+        high = trial / stiffness
+        if (.not. low < high) return
+        if (self%weakening(0.0_wp, high, pressure, dt, old) > stiffness) return
+
+        small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
+        answer%slip = max(low, creep(self, trial, pressure, dt, old%r, high))
+        do iteration = 1, max_iterations
+            call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
+                answer%d_slip, answer%d_pressure)
+            if (solved) return
+            misfit = trial - stiffness * answer%slip - answer%resistance
+            if (misfit > 0.0_wp) then
+                low = answer%slip
+            else if (answer%slip > low) then
+                high = answer%slip
+            else   ! in the part that is a straight line
+                answer%slip = trial / (stiffness + answer%resistance / low)
+                solved = .true.
+                cycle
+            end if
+            fall = answer%slip * (stiffness + answer%d_slip)
+            solved = abs(misfit) <= small * fall
+            if (abs(misfit) < 100.0_wp * fall) then
+                step = misfit / fall
+                answer%slip = answer%slip * exp(step)
+            end if
+            if (.not. (solved .or. (answer%slip > low .and. answer%slip < high))) then
+                answer%slip = sqrt(low) * sqrt(high)
+            end if
+        end do
+        solved = .false.
+    end subroutine solve
+
+    !> The slip under a traction if the state does not evolve by slip.
+    pure function creep(self, traction, pressure, dt, theta_n, most) result(slip)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: traction   !! > 0 [F/L^2]
+        real(wp), intent(in) :: pressure   !! > 0 [F/L^2]
+        real(wp), intent(in) :: dt         !! > 0 [T]
+        real(wp), intent(in) :: theta_n    !! at the start of the increment, > 0 [T]
+        real(wp), intent(in) :: most       !! slip that is enough [L]
+        real(wp) :: slip                   !! [L]
+        real(wp), parameter :: fast = 1.0e6_wp
+        real(wp) :: y, theta
+
+        theta = theta_n
+        if (self%evolution == ageing) theta = theta_n + dt
+        slip = most
+        if (traction > fast * self%a * pressure) return
+        y = traction / (self%a * pressure)
+        if (y < 1.0_wp) then
+            y = log(sinh(y))
+        else
+            y = y - ln_2 + log(1.0_wp - exp(-2.0_wp * y))
+        end if
+        slip = exp(min(y - direct_exponent(self, 1.0_wp, dt, log(theta)), log(most)))
+    end function creep
+
+    !> X of the law.
+    pure function direct_exponent(self, slip, dt, ln_theta) result(x)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: slip        !! > 0 [L]
+        real(wp), intent(in) :: dt          !! > 0 [T]
+        real(wp), intent(in) :: ln_theta    !! theta in [T]
+        real(wp) :: x
+
+        x = log(slip) - log(dt) - log(2.0_wp * self%v0) &
+            + (self%f0 + self%b * (log(self%v0) - log(self%d_c) + ln_theta)) / self%a
+    end function direct_exponent
+
+    !> (1 - e^-x)/x: what is left on average of something that decays.
+    pure function mean_decay(x, left) result(mean)
+        real(wp), intent(in) :: x      !! >= 0
+        real(wp), intent(in) :: left   !! e^-x
+        real(wp) :: mean
+
+        if (x > 0.5_wp) then
+            mean = (1.0_wp - left) / x
+        else if (left < 1.0_wp) then
+            mean = (1.0_wp - left) / (-log(left))   ! the errors of the two cancel
+        else
+            mean = 1.0_wp
+        end if
+    end function mean_decay
+
+    !> asinh(e^x) for every x.
+    pure function asinh_exp(x) result(y)
+        real(wp), intent(in) :: x
+        real(wp) :: y
+
+        if (x > 20.0_wp) then
+            y = x + ln_2 + 0.25_wp * exp(-2.0_wp * x)   ! the next term is below 1e-35
+        else
+            y = asinh(exp(x))
+        end if
+    end function asinh_exp
+
+    !> The derivative of that.
+    pure function slope_asinh_exp(x) result(slope)
+        real(wp), intent(in) :: x
+        real(wp) :: slope   !! 0 to 1
+
+        if (x > 0.0_wp) then
+            slope = 1.0_wp / sqrt(1.0_wp + exp(-2.0_wp * x))
+        else
+            slope = exp(x) / sqrt(1.0_wp + exp(2.0_wp * x))
+        end if
+    end function slope_asinh_exp
+
+end module friction_rate_state_law

@@ -1,0 +1,142 @@
+!> Linear slip-weakening friction: the coefficient falls from its static to its kinetic value over
+!> the slip d_c,
+!>
+!>     resistance = mu(D) p,   mu(D) = max(mu_k, mu_s - (mu_s - mu_k) D/d_c)
+!>
+!> with the slip D since the surface was fresh as internal variable. It does not heal: D never falls
+!> (a host that knows of healing sets it back). mu(D) is convex, so the equation of the return
+!> mapping is concave in the slip and positive at 0: it has one root, however steep the fall.
+module friction_slip_weakening_law
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state, sliding
+    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    implicit none
+    private
+
+    public :: read_slip_weakening_law, slip_weakening_law
+
+    type, extends(law) :: slip_weakening_law
+        real(wp) :: mu_s   !! coefficient of a fresh surface, >= mu_k [-]
+        real(wp) :: mu_k   !! coefficient after the slip d_c, >= 0 [-]
+        real(wp) :: d_c    !! slip over which it falls, > 0 [L]
+    contains
+        procedure :: virgin
+        procedure :: admits
+        procedure :: rest
+        procedure :: slide
+        procedure :: weakening
+        procedure :: solve
+    end type slip_weakening_law
+
+contains
+
+    !> The law from its constants `mu_s, mu_k, d_c`.
+    pure subroutine read_slip_weakening_law(n, constants, surface, status)
+        integer, intent(in) :: n                            !! number of constants, 3 or more
+        real(wp), intent(in) :: constants(n)                !! finite
+        type(slip_weakening_law), intent(out) :: surface    !! the law, if the status is ok
+        integer, intent(out) :: status                      !! ok, bad size, or bad property
+
+        status = friction_bad_size
+        if (n < 3) return
+        surface%mu_s = constants(1)
+        surface%mu_k = constants(2)
+        surface%d_c = constants(3)
+        status = friction_bad_property
+        if (surface%mu_k < 0.0_wp .or. surface%mu_s < surface%mu_k) return
+        if (surface%d_c <= 0.0_wp) return
+        status = friction_ok
+    end subroutine read_slip_weakening_law
+
+    pure function virgin(self) result(state)
+        class(slip_weakening_law), intent(in) :: self
+        type(law_state) :: state
+
+        state = law_state(mu=self%mu_s, r=0.0_wp)
+    end function virgin
+
+    !> The coefficient in the state is for the reader; it follows from D.
+    pure function admits(self, state) result(valid)
+        class(slip_weakening_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        logical :: valid
+
+        valid = state%mu >= 0.0_wp .and. state%r >= 0.0_wp
+    end function admits
+
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+
+        new = state_after(self, old%r)
+        strength = new%mu * pressure
+    end subroutine rest
+
+    !> Where the fall ends, the derivative is that of the end.
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+
+        new = state_after(self, old%r + slip)
+        d_pressure = new%mu
+        resistance = new%mu * pressure
+        d_slip = -fall(self, new%r, pressure)
+    end subroutine slide
+
+    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: bound
+
+        bound = fall(self, old%r + from, pressure)
+    end function weakening
+
+    !> Two straight lines, the lower of which counts.
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+        type(law_state) :: start
+        real(wp) :: slope
+
+        answer%slip = (trial - self%mu_k * pressure) / stiffness
+        slope = stiffness - fall(self, old%r, pressure)
+        start = state_after(self, old%r)
+        if (slope > 0.0_wp) answer%slip = min(answer%slip, (trial - start%mu * pressure) / slope)
+        call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
+            answer%d_slip, answer%d_pressure)
+        solved = .true.
+    end subroutine solve
+
+    pure function state_after(self, d) result(state)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: d   !! slip since the surface was fresh, >= 0 [L]
+        type(law_state) :: state
+        real(wp) :: mu
+
+        mu = self%mu_k
+        if (d < self%d_c) mu = mu + (self%mu_s - self%mu_k) * ((self%d_c - d) / self%d_c)
+        state = law_state(mu=mu, r=d)
+    end function state_after
+
+    !> How fast the resistance falls with slip.
+    pure function fall(self, d, pressure) result(rate)
+        class(slip_weakening_law), intent(in) :: self
+        real(wp), intent(in) :: d          !! slip since the surface was fresh, >= 0 [L]
+        real(wp), intent(in) :: pressure   !! [F/L^2]
+        real(wp) :: rate                   !! >= 0 [F/L^3]
+
+        rate = 0.0_wp
+        if (d < self%d_c) rate = (self%mu_s - self%mu_k) * pressure / self%d_c
+    end function fall
+
+end module friction_slip_weakening_law

@@ -1,0 +1,150 @@
+!> Friction that decays from a static to a kinetic coefficient with the slip rate v:
+!>
+!>     resistance = mu(v) p,   mu(v) = mu_k + (mu_s - mu_k) exp(-d_c v),   v = slip/dt
+!>
+!> The law has no memory; the internal variable stays 0. Because mu(v) is convex, the equation of
+!> the return mapping is concave in the slip and positive at 0: it has one root, however fast the
+!> resistance falls.
+module friction_static_kinetic_law
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state, sliding
+    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    implicit none
+    private
+
+    public :: read_static_kinetic_law, static_kinetic_law
+
+    type, extends(law) :: static_kinetic_law
+        real(wp) :: mu_s   !! coefficient at v = 0, >= mu_k [-]
+        real(wp) :: mu_k   !! coefficient at v -> infinity, >= 0 [-]
+        real(wp) :: d_c    !! decay, >= 0 [T/L]
+    contains
+        procedure :: virgin
+        procedure :: admits
+        procedure :: rest
+        procedure :: slide
+        procedure :: weakening
+        procedure :: needs_time
+        procedure :: solve
+    end type static_kinetic_law
+
+contains
+
+    !> The law from its constants `mu_s, mu_k, d_c`.
+    pure subroutine read_static_kinetic_law(n, constants, surface, status)
+        integer, intent(in) :: n                            !! number of constants, 3 or more
+        real(wp), intent(in) :: constants(n)                !! finite
+        type(static_kinetic_law), intent(out) :: surface    !! the law, if the status is ok
+        integer, intent(out) :: status                      !! ok, bad size, or bad property
+
+        status = friction_bad_size
+        if (n < 3) return
+        surface%mu_s = constants(1)
+        surface%mu_k = constants(2)
+        surface%d_c = constants(3)
+        status = friction_bad_property
+        if (surface%mu_k < 0.0_wp .or. surface%mu_s < surface%mu_k) return
+        if (surface%d_c < 0.0_wp) return
+        status = friction_ok
+    end subroutine read_static_kinetic_law
+
+    pure function virgin(self) result(state)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_state) :: state
+
+        state = law_state(mu=self%mu_s, r=0.0_wp)
+    end function virgin
+
+    !> The coefficient in the state is for the reader; the law has no memory.
+    pure function admits(self, state) result(valid)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        logical :: valid
+
+        valid = state%mu >= 0.0_wp .and. .not. abs(state%r) > 0.0_wp
+    end function admits
+
+    pure function needs_time(self) result(needs)
+        class(static_kinetic_law), intent(in) :: self
+        logical :: needs
+
+        needs = .true.
+    end function needs_time
+
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+
+        new = self%virgin()
+        strength = self%mu_s * pressure
+    end subroutine rest
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+        real(wp) :: rate, excess
+
+        rate = decay_per_slip(self, dt)
+        excess = (self%mu_s - self%mu_k) * exp(-rate * slip)
+        new = law_state(mu=self%mu_k + excess, r=0.0_wp)
+        d_pressure = new%mu
+        resistance = new%mu * pressure
+        d_slip = -rate * excess * pressure
+    end subroutine slide
+
+    !> The resistance falls ever slower.
+    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: bound
+        real(wp) :: rate
+
+        rate = decay_per_slip(self, dt)
+        bound = rate * (self%mu_s - self%mu_k) * exp(-rate * from) * pressure
+    end function weakening
+
+    !> Newton's method from the right, where a concave equation lets it fall on the root without
+    !> fail.
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+        integer, parameter :: max_iterations = 100
+        real(wp) :: step, fall
+        integer :: iteration
+
+        solved = .false.
+        answer%slip = (trial - self%mu_k * pressure) / stiffness
+        do iteration = 1, max_iterations
+            call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
+                answer%d_slip, answer%d_pressure)
+            fall = stiffness + answer%d_slip
+            if (.not. fall > 0.0_wp) return
+            step = (trial - stiffness * answer%slip - answer%resistance) / fall
+            solved = -step <= 4.0_wp * epsilon(step) * answer%slip
+            if (solved) return
+            answer%slip = answer%slip + step
+        end do
+    end subroutine solve
+
+    !> d_c/dt, short of what would overflow: so fast a decay is a jump.
+    pure function decay_per_slip(self, dt) result(rate)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp), intent(in) :: dt   !! > 0 [T]
+        real(wp) :: rate             !! [1/L]
+        real(wp), parameter :: fastest = 1.0e100_wp
+
+        rate = fastest
+        if (self%d_c < fastest * dt) rate = self%d_c / dt
+    end function decay_per_slip
+
+end module friction_static_kinetic_law

@@ -1,0 +1,121 @@
+!> The laws that the shared suite (test_law_suite.pf) examines, one line each, and random points
+!> under them.
+module law_suite
+    use, intrinsic :: iso_fortran_env, only : dp => real64, real128
+    use draws, only : draw
+    use friction_mod, only : friction_update, law_coulomb, law_rate_state, law_slip_weakening, &
+        law_static_kinetic, law_subloading
+    use quad_friction_mod, only : quad_update => friction_update
+    implicit none
+    private
+
+    public :: exact_tangent, law_case, law_point, laws, random_law_point
+
+    integer, parameter :: qp = real128
+    integer, parameter :: most_own = 7
+
+    type :: law_case
+        character(len=26) :: name
+        integer :: number            !! props(1)
+        integer :: n_own             !! number of own constants, all with their optional ones
+        real(dp) :: own(most_own)    !! typical values, for N, mm, s
+        character(len=most_own) :: spread   !! how a draw varies each: d over decades, m all by one
+                                            !! factor up to 1 (friction coefficients), - not at all
+        logical :: needs_time        !! refuses a tangential load without time
+    end type law_case
+
+    real(dp), parameter :: none = 0.0_dp
+
+    type(law_case), parameter :: laws(6) = [ &
+        law_case('subloading', law_subloading, 6, &
+        [0.4_dp, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp, none], 'mmdddm-', .false.), &
+        law_case('Coulomb', law_coulomb, 1, &
+        [0.4_dp, none, none, none, none, none, none], 'm------', .false.), &
+        law_case('static-kinetic', law_static_kinetic, 3, &
+        [0.4_dp, 0.2_dp, 0.1_dp, none, none, none, none], 'mmd----', .true.), &
+        law_case('rate-and-state, ageing', law_rate_state, 7, &
+        [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, 0.4_dp, 0.0_dp, 1.0e-2_dp], 'mmddm-d', .true.), &
+        law_case('rate-and-state, slip', law_rate_state, 7, &
+        [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, 0.4_dp, 1.0_dp, 1.0e-2_dp], 'mmddm-d', .true.), &
+        law_case('slip-weakening', law_slip_weakening, 3, &
+        [0.4_dp, 0.2_dp, 1.0e-2_dp, none, none, none, none], 'mmd----', .false.)]
+
+    !> Constants, state and increment of a contact point.
+    type :: law_point
+        real(dp), allocatable :: props(:)
+        real(dp) :: statev(8), du(3), dt
+        real(dp) :: reach   !! slips and elastic displacements are of this size [L]
+    end type law_point
+
+contains
+
+    !> A point with a history of some increments, whose constants span `decades` each.
+    function random_law_point(this, decades) result(p)
+        type(law_case), intent(in) :: this
+        real(dp), intent(in) :: decades
+        type(law_point) :: p
+        real(dp) :: half, factor, pressure, traction(3), tangent(3, 3)
+        integer :: i, k, status
+
+        half = 0.5_dp * decades
+        factor = draw(0.1_dp, 1.0_dp)
+        allocate (p%props(3 + this%n_own))
+        p%props(1) = this%number
+        p%props(2) = 1.0e3_dp * 10.0_dp**draw(-half, half)
+        p%props(3) = 1.0e3_dp * 10.0_dp**draw(-half, half)
+        do i = 1, this%n_own
+            p%props(3 + i) = this%own(i)
+            if (this%spread(i:i) == 'm') p%props(3 + i) = factor * this%own(i)
+            if (this%spread(i:i) == 'd') p%props(3 + i) = this%own(i) * 10.0_dp**draw(-half, half)
+        end do
+        pressure = 10.0_dp * 10.0_dp**draw(-half, half)
+        p%reach = 0.4_dp * pressure / p%props(3)
+        p%dt = 1.0e-3_dp * 10.0_dp**draw(-half, half)
+        p%statev = 0.0_dp
+        p%du = [-pressure / p%props(2), 0.0_dp, 0.0_dp]
+        do k = 0, int(draw(0.0_dp, 4.0_dp))
+            call friction_update(p%du, p%dt, p%props, p%statev, traction, tangent, status)
+            if (status < 0) exit   ! the test meets it again
+            factor = p%reach * 10.0_dp**draw(-half, half)
+            p%du = [draw(-0.3_dp, 0.3_dp) * pressure / p%props(2), &
+                draw(-1.0_dp, 1.0_dp) * factor, draw(-1.0_dp, 1.0_dp) * factor]
+        end do
+    end function random_law_point
+
+    !> Traction and d(traction)/d(du) by the quadruple copy of the library, the latter by central
+    !> differences: error about 1e-15 of the stiffness.
+    subroutine exact_tangent(p, traction, tangent, status)
+        type(law_point), intent(in) :: p
+        real(dp), intent(out) :: traction(3), tangent(3, 3)
+        integer, intent(out) :: status   !! of the update in quadruple precision
+        real(qp) :: h, plus(3), minus(3), middle(3)
+        integer :: j
+
+        h = 1.0e-13_qp * (norm2(p%du) + norm2(p%statev(2:4)))
+        call move(0, 0.0_qp, middle)
+        if (status < 0) return
+        traction = real(middle, dp)
+        do j = 1, 3
+            call move(j, h, plus)
+            call move(j, -h, minus)
+            tangent(:, j) = real((plus - minus) / (2.0_qp * h), dp)
+        end do
+
+    contains
+
+        subroutine move(direction, by, f)
+            integer, intent(in) :: direction   !! 0: none
+            real(qp), intent(in) :: by
+            real(qp), intent(out) :: f(3)
+            real(qp) :: du(3), statev(8), unused(3, 3)
+
+            du = p%du
+            if (direction > 0) du(direction) = du(direction) + by
+            statev = p%statev
+            f = 0.0_qp
+            call quad_update(du, real(p%dt, qp), real(p%props, qp), statev, f, unused, status)
+        end subroutine move
+
+    end subroutine exact_tangent
+
+end module law_suite
