@@ -29,7 +29,8 @@ module friction_status
     !> exist.
     character(len=message_length), parameter, public :: messages(first_message:last_message) = &
         [character(len=message_length) :: &
-        'the law depends on the slip rate: a closed contact under shear needs dtime > 0' // c_null_char, &
+        'the law depends on the slip rate: a closed contact under shear needs dtime > 0' &
+        // c_null_char, &
         'a pointer argument is NULL' // c_null_char, &
         'the contact normal is not a unit vector' // c_null_char, &
         'no equilibrium found: the increment is beyond the range of the arithmetic' &
