@@ -30,7 +30,8 @@ module friction_status
     character(len=message_length), parameter, public :: messages(first_message:last_message) = &
         [character(len=message_length) :: &
         'the law depends on the slip rate: a closed contact under shear needs dtime > 0' &
-        // c_null_char, 'a pointer argument is NULL' // c_null_char, &
+        // c_null_char, &
+        'a pointer argument is NULL' // c_null_char, &
         'the contact normal is not a unit vector' // c_null_char, &
         'no equilibrium found: the increment is beyond the range of the arithmetic' &
         // c_null_char, 'the state variables are out of range or not finite' // c_null_char, &

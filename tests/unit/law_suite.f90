@@ -26,9 +26,11 @@ module law_suite
 
     real(dp), parameter :: none = 0.0_dp
 
-    type(law_case), parameter :: laws(6) = [ &
+    type(law_case), parameter :: laws(7) = [ &
         law_case('subloading', law_subloading, 6, &
         [0.4_dp, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp, none], 'mmdddm-', .false.), &
+        law_case('subloading, exact rate', law_subloading, 7, &
+        [0.4_dp, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp, 1.0_dp], 'mmdddm-', .false.), &
         law_case('Coulomb', law_coulomb, 1, &
         [0.4_dp, none, none, none, none, none, none], 'm------', .false.), &
         law_case('static-kinetic', law_static_kinetic, 3, &
