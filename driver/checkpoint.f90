@@ -112,24 +112,22 @@ contains
             call mix([run%props, run%mass, run%stiffness, run%damping, run%area, run%t_end, &
                 run%dt, run%rtol, run%dt_min, run%dt_max, run%beta, run%gamma, run%rho_infinity, &
                 run%tolerance, real(run%max_iterations, dp), real(run%interval, dp), start%mu, &
-                start%r, start%displacement, start%velocity, start%spring_force])
+                start%r, start%displacement, start%velocity, start%spring_force], mixed)
             call mix([d%start, d%travel, d%velocity, d%acceleration, d%normal, d%normal_rate, &
-                d%amplitude, d%frequency, d%phase])
+                d%amplitude, d%frequency, d%phase], mixed)
         end associate
-
-    contains
-
-        pure subroutine mix(numbers)
-            real(dp), intent(in) :: numbers(:)
-            integer :: i
-
-            do i = 1, size(numbers)
-                mixed = ieor(ishftc(mixed, 23), transfer(numbers(i), mixed))
-                mixed = ieor(mixed, shiftl(mixed, 13))
-                mixed = ieor(mixed, shiftr(mixed, 7))
-            end do
-        end subroutine mix
-
     end function digest
+
+    pure subroutine mix(numbers, mixed)
+        real(dp), intent(in) :: numbers(:)
+        integer(int64), intent(inout) :: mixed
+        integer :: i
+
+        do i = 1, size(numbers)
+            mixed = ieor(ishftc(mixed, 23), transfer(numbers(i), mixed))
+            mixed = ieor(mixed, shiftl(mixed, 13))
+            mixed = ieor(mixed, shiftr(mixed, 7))
+        end do
+    end subroutine mix
 
 end module checkpoint
