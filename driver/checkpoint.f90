@@ -2,6 +2,7 @@
 !> written whole and then takes the place of the one before.
 module checkpoint
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use chain_events, only : chain_finder
     use platform, only : rename_file
     use recorder, only : csv_recorder
     use run_outcome, only : outcome
@@ -19,11 +20,13 @@ module checkpoint
         type(slider_state) :: state
         type(stepper) :: steps
         type(event_finder) :: finder
+        type(chain_finder) :: chain
         type(outcome) :: result
         integer :: rows_due = 0   !! steps since the last row
+        integer :: fields_due = 0   !! steps since the last fields
     end type snapshot
 
-    character(len=*), parameter :: first_words = 'stickslip checkpoint 1', last_words = 'end'
+    character(len=*), parameter :: first_words = 'stickslip checkpoint 2', last_words = 'end'
 
 contains
 
@@ -44,11 +47,12 @@ contains
         if (status /= 0) return
         associate (x => now%state, s => now%steps, r => now%result)
             write (unit, iostat=status) first_words, digest(run), size(x%x), size(r%pieces), &
-                size(r%onsets), x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, x%friction, &
-                x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, s%iterations, &
-                s%most_iterations, s%last_error, now%finder, r%steps, r%snap_backs, &
-                r%peak_velocity, r%energy, r%pieces, r%onsets, now%rows_due, records%rows, &
-                records%series%bytes, records%events%bytes, last_words
+                size(r%onsets), now%chain%count, x%time, x%drive, x%normal, x%x, x%v, x%a, &
+                x%spring, x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
+                s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, r%snap_backs, &
+                r%peak_velocity, r%energy, r%pieces, r%onsets, r%chain_events, r%largest_moment, &
+                now%chain%events(:now%chain%count), now%rows_due, now%fields_due, records%rows, &
+                records%series%bytes, records%events%bytes, records%fields%bytes, last_words
         end associate
         inquire (unit=unit, pos=expected)
         close (unit)
@@ -65,12 +69,12 @@ contains
         type(settings), intent(in) :: run
         type(snapshot), intent(inout) :: now
         integer, intent(out) :: rows             !! of the time series
-        integer(int64), intent(out) :: bytes(2)  !! of the time series, of the events
+        integer(int64), intent(out) :: bytes(3)  !! of the time series, events, fields
         character(len=:), allocatable, intent(out) :: problem
         character(len=len(first_words)) :: first
         character(len=len(last_words)) :: last
         integer(int64) :: seen
-        integer :: unit, status, blocks, pieces, events
+        integer :: unit, status, blocks, pieces, events, under_way
 
         rows = 0
         bytes = 0
@@ -81,21 +85,23 @@ contains
             problem = 'there is no checkpoint ' // name
             return
         end if
-        read (unit, iostat=status) first, seen, blocks, pieces, events
+        read (unit, iostat=status) first, seen, blocks, pieces, events, under_way
         if (status /= 0 .or. first /= first_words) then
             problem = name // ' is no checkpoint of this version'
         else if (seen /= digest(run) .or. blocks /= size(now%state%x) &
             .or. pieces /= size(now%result%pieces)) then
             problem = 'the input is not the one that wrote the checkpoint ' // name
         else
-            deallocate (now%result%onsets)
-            allocate (now%result%onsets(events))
+            deallocate (now%result%onsets, now%chain%events)
+            allocate (now%result%onsets(events), now%chain%events(max(1, under_way)))
+            now%chain%count = under_way
             associate (x => now%state, s => now%steps, r => now%result)
                 read (unit, iostat=status) x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, &
                     x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
                     s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, &
-                    r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, now%rows_due, &
-                    rows, bytes, last
+                    r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
+                    r%chain_events, r%largest_moment, now%chain%events(:under_way), &
+                    now%rows_due, now%fields_due, rows, bytes, last
             end associate
             if (status /= 0 .or. last /= last_words) problem = name // ' is damaged'
         end if
@@ -108,11 +114,13 @@ contains
         integer(int64) :: mixed
 
         mixed = 0
-        associate (d => run%drive, start => run%initial)
+        associate (d => run%drive, start => run%initial, c => run%chain)
             call mix([run%props, run%mass, run%stiffness, run%damping, run%area, run%t_end, &
                 run%dt, run%rtol, run%dt_min, run%dt_max, run%beta, run%gamma, run%rho_infinity, &
                 run%tolerance, real(run%max_iterations, dp), real(run%interval, dp), start%mu, &
                 start%r, start%displacement, start%velocity, start%spring_force], mixed)
+            call mix([real(c%n_blocks, dp), c%coupling, real(c%ends, dp), c%scatter, &
+                real(c%seed, dp), c%slip_rate, real(run%fields, dp)], mixed)
             call mix([d%start, d%travel, d%velocity, d%acceleration, d%normal, d%normal_rate, &
                 d%amplitude, d%frequency, d%phase], mixed)
         end associate

@@ -9,7 +9,7 @@ module law_input
     implicit none
     private
 
-    public :: read_friction
+    public :: kinetic_coefficient, read_friction, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -50,6 +50,26 @@ contains
         props = [real(number, dp), alpha_n, alpha_t, own]
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
+
+    !> The friction coefficient of a surface at rest, or where the law has none, of a usual one: the
+    !> scale of forces.
+    pure function typical_coefficient(props) result(mu)
+        real(dp), intent(in) :: props(:)   !! of the friction routine
+        real(dp) :: mu                     !! [-]
+
+        mu = props(4)
+        if (nint(props(1)) == law_rate_state) mu = props(8)
+    end function typical_coefficient
+
+    !> The friction coefficient that is left when the surface has slid far, where that is a constant
+    !> of the law; else the static one.
+    pure function kinetic_coefficient(props) result(mu)
+        real(dp), intent(in) :: props(:)   !! of the friction routine
+        real(dp) :: mu                     !! [-]
+
+        mu = props(5)
+        if (any(nint(props(1)) == [law_coulomb, law_rate_state])) mu = typical_coefficient(props)
+    end function kinetic_coefficient
 
     subroutine read_subloading(file, own)
         type(namelist_file), intent(inout) :: file

@@ -2,6 +2,7 @@
 !> written, whatever happens to the run.
 module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use chain_events, only : chain_event
     use friction_mod, only : statev_mu, statev_r, statev_slip
     use slider_system, only : slider_state
     use slip_events, only : slip_event
@@ -15,38 +16,54 @@ module recorder
         'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,R,slip'
     character(len=*), parameter :: events_header = &
         'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
+    character(len=*), parameter :: chain_events_header = &
+        'onset,duration,first_block,blocks,slip,moment,peak_velocity'
+    character(len=*), parameter :: fields_header = 'time,block,slip_rate,slip,mu'
     integer, parameter :: rows_between_flushes = 200
 
     type :: csv_recorder
-        type(output_file) :: series, events
+        type(output_file) :: series, events, fields
         integer :: rows = 0
     contains
-        procedure :: start, go_on, flush_all, write_state, write_event, failed, finish
+        procedure :: start, go_on, flush_all, write_state, write_event, write_chain_event, &
+            write_fields, failed, finish
     end type csv_recorder
 
 contains
 
-    subroutine start(self, series_name, events_name)
+    !> The catalogue of a chain has other columns than that of one block. Without a name for fields
+    !> none are written.
+    subroutine start(self, series_name, events_name, chain, fields_name)
         class(csv_recorder), intent(inout) :: self
         character(len=*), intent(in) :: series_name, events_name
+        logical, intent(in) :: chain
+        character(len=*), intent(in) :: fields_name   !! may be empty
 
         call self%series%create(series_name)
         call self%events%create(events_name)
         call self%series%write_line(series_header)
-        call self%events%write_line(events_header)
-        call self%series%flush_lines()
-        call self%events%flush_lines()
+        if (chain) then
+            call self%events%write_line(chain_events_header)
+        else
+            call self%events%write_line(events_header)
+        end if
+        if (len(fields_name) > 0) then
+            call self%fields%create(fields_name)
+            call self%fields%write_line(fields_header)
+        end if
+        call self%flush_all()
     end subroutine start
 
     !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
-    subroutine go_on(self, series_name, events_name, rows, bytes)
+    subroutine go_on(self, series_name, events_name, fields_name, rows, bytes)
         class(csv_recorder), intent(inout) :: self
-        character(len=*), intent(in) :: series_name, events_name
+        character(len=*), intent(in) :: series_name, events_name, fields_name
         integer, intent(in) :: rows              !! of the time series
-        integer(int64), intent(in) :: bytes(2)   !! of the time series, of the events
+        integer(int64), intent(in) :: bytes(3)   !! of the time series, the events, the fields
 
         call self%series%go_on(series_name, bytes(1))
         call self%events%go_on(events_name, bytes(2))
+        if (len(fields_name) > 0) call self%fields%go_on(fields_name, bytes(3))
         self%rows = rows
     end subroutine go_on
 
@@ -55,6 +72,7 @@ contains
 
         call self%series%flush_lines()
         call self%events%flush_lines()
+        call self%fields%flush_lines()
     end subroutine flush_all
 
     !> Has something been lost on its way to the disk?
@@ -62,20 +80,61 @@ contains
         class(csv_recorder), intent(in) :: self
         logical :: lost
 
-        lost = self%series%failed .or. self%events%failed
+        lost = self%series%failed .or. self%events%failed .or. self%fields%failed
     end function failed
 
-    !> One row of the time series. Of several blocks it shows the first.
+    !> One row of the time series. Of several blocks it shows the means.
     subroutine write_state(self, state)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: state
 
-        call self%series%write_line(row([state%time, state%drive, state%x(1), state%v(1), &
-            state%a(1), state%spring(1), state%friction(1), state%statev(statev_mu, 1), &
-            state%statev(statev_r, 1), state%statev(statev_slip, 1)]))
+        call self%series%write_line(row([state%time, state%drive, mean(state%x), mean(state%v), &
+            mean(state%a), mean(state%spring), mean(state%friction), &
+            mean(state%statev(:, statev_mu)), mean(state%statev(:, statev_r)), &
+            mean(state%statev(:, statev_slip))]))
         self%rows = self%rows + 1
         if (mod(self%rows, rows_between_flushes) == 0) call self%series%flush_lines()
     end subroutine write_state
+
+    pure function mean(values)
+        real(dp), intent(in) :: values(:)
+        real(dp) :: mean
+
+        mean = sum(values) / size(values)
+    end function mean
+
+    !> One row of the catalogue of a chain.
+    subroutine write_chain_event(self, event, area)
+        class(csv_recorder), intent(inout) :: self
+        type(chain_event), intent(in) :: event
+        real(dp), intent(in) :: area   !! contact area of a block [L^2]
+        character(len=24) :: blocks
+
+        write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
+        call self%events%write_line(row([event%onset, event%end - event%onset]) // ',' &
+            // trim(blocks) // ',' // row([event%slip / (event%last - event%first + 1), &
+            area * event%slip, event%peak_velocity]))
+        call self%events%flush_lines()
+    end subroutine write_chain_event
+
+    !> The blocks after the step from `old` to `new`, a line each, and an empty line for gnuplot.
+    subroutine write_fields(self, old, new)
+        class(csv_recorder), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        character(len=72) :: line
+        real(dp) :: dt
+        integer :: i
+
+        dt = max(new%time - old%time, tiny(dt))
+        do i = 1, size(new%x)
+            write (line, '(es13.6e2, ",", i0, 3(",", es13.6e2))') new%time, i, &
+                (new%statev(i, statev_slip) - old%statev(i, statev_slip)) / dt, &
+                new%statev(i, statev_slip), new%statev(i, statev_mu)
+            call self%fields%write_line(trim(line))
+        end do
+        call self%fields%write_line('')
+        call self%fields%flush_lines()
+    end subroutine write_fields
 
     !> One row of the table of events. The first event has no recurrence time: NaN.
     subroutine write_event(self, event, area)
@@ -113,6 +172,7 @@ contains
 
         call self%series%finish()
         call self%events%finish()
+        call self%fields%finish()
     end subroutine finish
 
 end module recorder

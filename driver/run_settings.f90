@@ -1,7 +1,8 @@
 !> What a run is told to do: the groups and keys of the input file, with their defaults and rules.
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use law_input, only : read_friction
+    use chain_settings, only : chain, read_chain
+    use law_input, only : kinetic_coefficient, read_friction, typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use slider_system, only : initial_values
@@ -18,6 +19,7 @@ module run_settings
         real(dp) :: area                    !! apparent contact area [L^2]
         type(initial_values) :: initial
         type(programme) :: drive
+        type(chain) :: chain
         real(dp) :: t_end, dt               !! end of the run, step or first step [T]
         real(dp) :: checkpoint              !! time between two checkpoints, by the clock [s]
         logical :: adaptive                 !! the error chooses the steps
@@ -29,8 +31,11 @@ module run_settings
         real(dp) :: tolerance               !! of the force residual, relative to the largest force
         integer :: max_iterations           !! of Newton's method in a step
         integer :: interval                 !! steps between two rows of the CSV file
+        integer :: fields                   !! steps between two pictures of the chain; 0: none
         integer :: n_steps                  !! follows from t_end and dt
     end type settings
+
+    integer, parameter :: most_in_csv = 1000   !! blocks whose fields are written
 
 contains
 
@@ -61,12 +66,42 @@ contains
         call read_drive(file, normal, run%drive)
         call read_initial(file, run)
         call read_time(file, run)
+        call read_chain(file, run%mass, run%chain)
+        call derive_slip_rate(file, run)
         if (file%has_group('output')) continue
         call file%get_integer('output', 'interval', run%interval, at_least(1.0_dp), default=1)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
             default=60.0_dp)
+        call read_fields(file, run)
         call file%refuse_unknown()
     end subroutine read_settings
+
+    !> Slip of a chain's block counts as an event's from a part of the velocity on that a block
+    !> reaches when friction falls from static to kinetic.
+    subroutine derive_slip_rate(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        real(dp), parameter :: part = 0.05_dp
+
+        if (run%chain%n_blocks == 1 .or. run%chain%slip_rate > 0.0_dp) return
+        if (size(file%faults) > 0) return
+        run%chain%slip_rate = part * run%area * (typical_coefficient(run%props) &
+            - kinetic_coefficient(run%props)) * run%drive%largest_normal() &
+            / sqrt(run%stiffness * run%mass)
+        if (run%chain%slip_rate <= 0.0_dp) call file%add_fault(0, &
+            '&chain slip_rate: is missing, and has no default where friction does not fall')
+    end subroutine derive_slip_rate
+
+    subroutine read_fields(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+
+        call file%get_integer('output', 'fields', run%fields, at_least(0.0_dp), default=0)
+        if (run%fields > 0 .and. run%chain%n_blocks == 1) call file%reject('output', 'fields', &
+            'needs a chain of two or more blocks')
+        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv) call file%reject('output', &
+            'fields', 'needs a chain of 1000 blocks or fewer')
+    end subroutine read_fields
 
     !> How the block starts.
     subroutine read_initial(file, run)

@@ -1,6 +1,8 @@
 !> Runs the slider through its programme: steps in time, rows on disk, events found, energy booked.
 module simulation
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_events, only : chain_event
+    use chain_settings, only : scattered
     use checkpoint, only : snapshot, write_checkpoint
     use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
         statev_slip
@@ -9,7 +11,7 @@ module simulation
     use recorder, only : csv_recorder
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use slider_system, only : initial_state, place, slider, slider_state
+    use slider_system, only : initial_state, place, slider, slider_state, swap_states
     use slip_events, only : moment, slip_event, turning_point
     use time_integrator, only : step_report
     implicit none
@@ -44,6 +46,7 @@ contains
         else
             call start_run(run, live)
             call record(live%state)
+            if (run%fields > 0) call records%write_fields(live%state, live%state)
         end if
         new = live%state
         last_checkpoint = seconds()
@@ -67,8 +70,10 @@ contains
             end if
             if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
             if (live%rows_due == run%interval) live%rows_due = 0
+            call record_fields(live%state, new)
             call watch(live%state, new)
-            live%state = new
+            if (run%chain%n_blocks > 1) call list_events(live%state, new)
+            call swap_states(live%state, new)
             call bar%show(live%state%time / run%t_end)
             if (present(checkpoint_name)) call keep()
         end do
@@ -102,6 +107,34 @@ contains
             if (records%failed()) call fail('cannot write the time series (disk full?)')
         end subroutine record
 
+        !> The fields, if it is time for them.
+        subroutine record_fields(before, now)
+            type(slider_state), intent(in) :: before, now
+
+            if (run%fields == 0) return
+            live%fields_due = live%fields_due + 1
+            if (live%fields_due < run%fields) return
+            call records%write_fields(before, now)
+            live%fields_due = 0
+            if (records%failed()) call fail('cannot write the fields (disk full?)')
+        end subroutine record_fields
+
+        !> The events of a chain that have ended.
+        subroutine list_events(before, now)
+            type(slider_state), intent(in) :: before, now
+            type(chain_event), allocatable :: ended(:)
+            integer :: i
+
+            call live%chain%look(before, now, ended)
+            do i = 1, size(ended)
+                call records%write_chain_event(ended(i), run%area)
+                live%result%chain_events = live%result%chain_events + 1
+                live%result%largest_moment = max(live%result%largest_moment, &
+                    run%area * ended(i)%slip)
+            end do
+            if (records%failed()) call fail('cannot write the events (disk full?)')
+        end subroutine list_events
+
         !> Looks for slip events, at the end of a step and where the force turns within.
         subroutine watch(before, now)
             type(slider_state), intent(in) :: before, now
@@ -120,9 +153,13 @@ contains
             type(slider_state), intent(in) :: state
             integer, intent(in) :: i   !! piece of the programme
             type(moment) :: now
+            real(dp) :: velocity
+            integer :: n
 
-            now = moment(state%time, state%spring(1), state%statev(statev_slip, 1), state%v(1), &
-                run%stiffness * (run%drive%drive_velocity(state%time, i) - state%v(1)))
+            n = size(state%x)
+            velocity = sum(state%v) / n
+            now = moment(state%time, sum(state%spring) / n, sum(state%statev(:, statev_slip)) / n, &
+                velocity, run%stiffness * (run%drive%drive_velocity(state%time, i) - velocity))
         end function seen
 
         subroutine look(now)
@@ -136,7 +173,7 @@ contains
             i = min(run%drive%piece(event%onset), run%drive%listed)
             call add_event(live%result%pieces(i), event, run%drive%start(i))
             live%result%onsets = [live%result%onsets, event%onset]
-            call records%write_event(event, run%area)
+            if (run%chain%n_blocks == 1) call records%write_event(event, run%area)
             if (records%failed()) call fail('cannot write the events (disk full?)')
         end subroutine look
 
@@ -158,11 +195,16 @@ contains
         type(slider) :: system
         integer :: status
 
-        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props)
+        system = slider(run%mass, run%stiffness, run%damping, run%area, run%props, &
+            run%chain%coupling, run%chain%ends)
+        if (run%chain%scatter > 0.0_dp) system%load = scattered(run%chain)
+        live%chain%slip_rate = run%chain%slip_rate
+        allocate (live%chain%events(16))
         live%finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
         allocate (live%result%pieces(run%drive%listed), live%result%onsets(0))
         live%result%failure = ''
-        call initial_state(system, 1, run%drive%normal_traction(0.0_dp, 1), live%state, status)
+        call initial_state(system, run%chain%n_blocks, run%drive%normal_traction(0.0_dp, 1), &
+            live%state, status)
         if (status < 0) live%result%failure = 'at the start: ' // friction_message(status)
         call place(system, run%initial, live%state)
         live%result%energy%at_start = system%stored(live%state)

@@ -1,26 +1,36 @@
-!> Blocks on a base, each pulled by a spring whose far end the drive moves (docs/theory.md, section
-!> 7):
+!> Blocks on a base, each pulled by a spring whose far end the drive moves, and by springs between
+!> neighbours (docs/theory.md, section 7):
 !>
-!>     M a = K (x_d - x) - C v - S f_t
+!>     M a_i = K (x_d - x_i) + K_c (x_(i+1) - 2 x_i + x_(i-1)) - C v_i - S f_t,i
 !>
-!> The friction force comes from the same `friction_update` that finite-element hosts call; the
-!> normal traction is controlled through the penetration that carries it.
+!> The friction forces come from the same routines that finite-element hosts call; the normal
+!> traction is controlled through the penetration that carries it.
 module slider_system
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_ok, friction_snap_back, friction_update, statev_dissipation, &
-        statev_mu, statev_r, statev_size, statev_u_et
+    use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
+        friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et
     implicit none
     private
 
     public :: apply_normal_traction, energy_balance, friction_forces, initial_state, &
-        initial_values, place, slider, slider_state
+        initial_values, place, set_accelerations, slider, slider_state, swap_states
+
+    !> What the first and the last block are coupled to.
+    integer, parameter, public :: ends_free = 1       !! nothing
+    integer, parameter, public :: ends_fixed = 2      !! a wall that stands still
+    integer, parameter, public :: ends_periodic = 3   !! each other
 
     !> What stays.
     type :: slider
         real(dp) :: mass, stiffness, damping, area   !! [M], [F/L], [F T/L], [L^2]
         real(dp), allocatable :: props(:)            !! constants of the friction routine
+        real(dp) :: coupling = 0.0_dp                !! of neighbours [F/L]
+        integer :: ends = ends_free
+        real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
+                                           !! programme; all 1 if not allocated [-]
     contains
         procedure :: penetration_step
+        procedure :: add_coupling, coupling_energy
         procedure :: account
         procedure :: stored
     end type slider
@@ -44,7 +54,7 @@ module slider_system
         real(dp), allocatable :: x(:), v(:), a(:)   !! of each block [L], [L/T], [L/T^2]
         real(dp), allocatable :: spring(:)       !! force of the drive spring [F]
         real(dp), allocatable :: friction(:)     !! S f_t, positive when it opposes +x [F]
-        real(dp), allocatable :: statev(:, :)    !! of the friction routine, one column a block
+        real(dp), allocatable :: statev(:, :)    !! of the friction routine, one row a block
     end type slider_state
 
     !> Where the work of the drive has gone [F L].
@@ -57,17 +67,20 @@ module slider_system
         procedure :: unbalanced
     end type energy_balance
 
+    integer, parameter :: part = 512   !! blocks that are taken through the friction law together
+
 contains
 
     !> At rest, pressed on the base, no spring stretched.
-    pure subroutine initial_state(system, n_blocks, normal, state, status)
+    subroutine initial_state(system, n_blocks, normal, state, status)
         type(slider), intent(in) :: system
         integer, intent(in) :: n_blocks
         real(dp), intent(in) :: normal           !! normal traction at the start [F/L^2]
         type(slider_state), intent(out) :: state
         integer, intent(out) :: status           !! of the friction routine
-        real(dp) :: tangent(n_blocks), zero(n_blocks), virgin(statev_size, n_blocks)
+        real(dp), allocatable :: tangent(:), zero(:), virgin(:, :)
 
+        allocate (zero(n_blocks), tangent(n_blocks), virgin(n_blocks, statev_size))
         zero = 0.0_dp
         virgin = 0.0_dp
         state%x = zero
@@ -81,7 +94,7 @@ contains
             state%statev, state%friction, tangent, status)
     end subroutine initial_state
 
-    !> Puts the block where the initial values say.
+    !> Puts the blocks where the initial values say.
     pure subroutine place(system, values, state)
         type(slider), intent(in) :: system
         type(initial_values), intent(in) :: values
@@ -90,16 +103,87 @@ contains
         if (.not. values%any_given) return
         state%x = values%displacement
         state%v = values%velocity
-        state%statev(statev_mu, :) = values%mu
-        state%statev(statev_r, :) = values%r
+        state%statev(:, statev_mu) = values%mu
+        state%statev(:, statev_r) = values%r
         state%friction = system%area * values%r * values%mu * state%normal
-        state%statev(statev_u_et, :) = values%r * values%mu * state%normal / system%props(3)
-        state%spring = state%friction + system%damping * state%v
+        if (allocated(system%load)) state%friction = state%friction * system%load
+        state%statev(:, statev_u_et) = state%friction / (system%area * system%props(3))
+        state%spring = sum(state%friction) / size(state%friction) &
+            + system%damping * values%velocity
         if (values%spring_given) state%spring = values%spring_force
         state%drive = state%x(1) + state%spring(1) / system%stiffness
-        if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
-            - state%friction) / system%mass
+        call set_accelerations(system, state)
     end subroutine place
+
+    !> Accelerations by the equation of motion; without a mass they are what they were.
+    pure subroutine set_accelerations(system, state)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(inout) :: state
+
+        if (system%mass <= 0.0_dp) return
+        state%a = state%spring - system%damping * state%v - state%friction
+        call system%add_coupling(state%x, 1.0_dp, state%a)
+        state%a = state%a / system%mass
+    end subroutine set_accelerations
+
+    !> Adds the forces of the springs between neighbours, times a factor.
+    pure subroutine add_coupling(self, x, factor, force)
+        class(slider), intent(in) :: self
+        real(dp), intent(in) :: x(:)           !! displacements [L]
+        real(dp), intent(in) :: factor         !! [-]
+        real(dp), intent(inout) :: force(:)    !! [F]
+        real(dp) :: k, before, after           ! displacements beyond the ends
+        integer :: i, n
+
+        if (self%coupling <= 0.0_dp) return
+        n = size(x)
+        k = factor * self%coupling
+        call beyond_ends(self%ends, x, before, after)
+        if (n == 1) then
+            force(1) = force(1) + k * (before - 2.0_dp * x(1) + after)
+            return
+        end if
+        force(1) = force(1) + k * (x(2) - 2.0_dp * x(1) + before)
+        do i = 2, n - 1
+            force(i) = force(i) + k * (x(i + 1) - 2.0_dp * x(i) + x(i - 1))
+        end do
+        force(n) = force(n) + k * (after - 2.0_dp * x(n) + x(n - 1))
+    end subroutine add_coupling
+
+    !> Energy of the springs between neighbours [F L].
+    pure function coupling_energy(self, x) result(energy)
+        class(slider), intent(in) :: self
+        real(dp), intent(in) :: x(:)   !! displacements [L]
+        real(dp) :: energy
+        real(dp) :: before, after
+        integer :: i
+
+        energy = 0.0_dp
+        if (self%coupling <= 0.0_dp) return
+        do i = 2, size(x)
+            energy = energy + (x(i) - x(i - 1))**2
+        end do
+        call beyond_ends(self%ends, x, before, after)
+        energy = energy + (x(1) - before)**2
+        if (self%ends == ends_fixed) energy = energy + (after - x(size(x)))**2
+        energy = 0.5_dp * self%coupling * energy
+    end function coupling_energy
+
+    !> Displacements of what the first and the last block are coupled to.
+    pure subroutine beyond_ends(ends, x, before, after)
+        integer, intent(in) :: ends
+        real(dp), intent(in) :: x(:)               !! [L]
+        real(dp), intent(out) :: before, after     !! [L]
+
+        before = 0.0_dp
+        after = 0.0_dp
+        if (ends == ends_fixed) return
+        before = x(1)   ! no force
+        after = x(size(x))
+        if (ends == ends_free) return
+        before = x(size(x))
+        after = x(1)
+    end subroutine beyond_ends
 
     !> Energy that a state holds: of the motion, of the springs, of the contact [F L].
     pure function stored(self, state) result(energy)
@@ -109,7 +193,7 @@ contains
 
         energy = 0.5_dp * self%mass * sum(state%v**2) + 0.5_dp * sum(state%spring**2) &
             / self%stiffness + 0.5_dp * self%area * self%props(3) &
-            * sum(state%statev(statev_u_et, :)**2)
+            * sum(state%statev(:, statev_u_et)**2) + self%coupling_energy(state%x)
     end function stored
 
     !> Change of u_n that brings the normal traction from `old` to `new`.
@@ -122,52 +206,125 @@ contains
     end function penetration_step
 
     !> Friction force and its derivative on every block, for displacement increments from `old`.
-    pure subroutine friction_forces(system, old, du_n, dx, dt, new, force, stiffness, status)
+    subroutine friction_forces(system, old, du_n, dx, dt, new, force, stiffness, status)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: old(:, :)        !! state variables at the start of the step
-        real(dp), intent(in) :: du_n             !! increment of u_n [L]
+        real(dp), intent(in) :: du_n             !! increment of u_n under a load of 1 [L]
         real(dp), intent(in) :: dx(:)            !! increment of displacement [L]
         real(dp), intent(in) :: dt               !! [T]
         real(dp), intent(inout) :: new(:, :)     !! state variables at its end
         real(dp), intent(inout) :: force(:)      !! S f_t [F]
         real(dp), intent(inout) :: stiffness(:)  !! S df_t/dx [F/L]
         integer, intent(out) :: status           !! the worst: an error, snap-back, or ok
-        real(dp) :: traction(2), tangent(2, 2)
-        integer :: i, point_status
+        integer, parameter :: few = 16   !! blocks for which the batch routine takes longer
+        integer :: first, last, part_status
 
         status = friction_ok
-        do i = 1, size(dx)
-            new(:, i) = old(:, i)
-            call friction_update([du_n, dx(i)], dt, system%props, new(:, i), traction, tangent, &
-                point_status)
-            if (point_status < 0) then
-                status = point_status
-                return
-            end if
-            if (point_status == friction_snap_back) status = friction_snap_back
+        if (size(dx) < few) then
+            do first = 1, size(dx)
+                call force_on_one(first, part_status)
+                if (part_status /= friction_ok) status = part_status
+                if (status < 0) return
+            end do
+        else
+            do first = 1, size(dx), part
+                last = min(first + part - 1, size(dx))
+                call forces_on_part(system, old, du_n, dx, dt, first, last, new, force, stiffness, &
+                    part_status)
+                if (part_status /= friction_ok) status = part_status
+                if (status < 0) return
+            end do
+        end if
+
+    contains
+
+        subroutine force_on_one(i, point_status)
+            integer, intent(in) :: i
+            integer, intent(out) :: point_status
+            real(dp) :: du(2), statev(statev_size), traction(2), tangent(2, 2)
+
+            du = [du_n, dx(i)]
+            if (allocated(system%load)) du(1) = du_n * system%load(i)
+            statev = old(i, :)
+            call friction_update(du, dt, system%props, statev, traction, tangent, point_status)
+            if (point_status < 0) return
+            new(i, :) = statev
             force(i) = system%area * traction(2)
             stiffness(i) = system%area * tangent(2, 2)
-        end do
+        end subroutine force_on_one
+
     end subroutine friction_forces
 
+    !> The same for blocks `first` to `last`, a part that stays in cache: what the friction routine
+    !> needs and leaves beside the forces never gets to memory.
+    subroutine forces_on_part(system, old, du_n, dx, dt, first, last, new, force, stiffness, status)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: old(:, :), du_n, dx(:), dt
+        integer, intent(in) :: first, last
+        real(dp), intent(inout) :: new(:, :), force(:), stiffness(:)
+        integer, intent(out) :: status
+        real(dp) :: du(last - first + 1, 2), statev(last - first + 1, statev_size), &
+            traction(last - first + 1, 2), tangent(last - first + 1, 2, 2)
+        integer :: statuses(last - first + 1), k
+
+        du(:, 1) = du_n
+        if (allocated(system%load)) du(:, 1) = du_n * system%load(first:last)
+        du(:, 2) = dx(first:last)
+        do k = 1, statev_size
+            statev(:, k) = old(first:last, k)
+        end do
+        call friction_update_batch(du, dt, system%props, statev, traction, tangent, statuses)
+        status = minval(statuses)
+        if (status < 0) return
+        status = maxval(statuses)
+        do k = 1, statev_size
+            new(first:last, k) = statev(:, k)
+        end do
+        force(first:last) = system%area * traction(:, 2)
+        stiffness(first:last) = system%area * tangent(:, 2, 2)
+    end subroutine forces_on_part
+
     !> A sudden change of the normal traction, at one moment of time.
-    pure subroutine apply_normal_traction(system, normal, state)
+    subroutine apply_normal_traction(system, normal, state)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: normal   !! afterwards [F/L^2]
         type(slider_state), intent(inout) :: state
-        real(dp) :: old(size(state%statev, 1), size(state%x)), zero(size(state%x)), &
-            tangent(size(state%x))
+        real(dp), allocatable :: old(:, :), zero(:), tangent(:)
         integer :: status
 
         if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
+        allocate (zero(size(state%x)), tangent(size(state%x)))
         zero = 0.0_dp
         old = state%statev
         call friction_forces(system, old, system%penetration_step(state%normal, normal), zero, &
             0.0_dp, state%statev, state%friction, tangent, status)
         state%normal = normal
-        if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
-            - state%friction) / system%mass
+        call set_accelerations(system, state)
     end subroutine apply_normal_traction
+
+    !> Exchanges two states without copying them.
+    pure subroutine swap_states(a, b)
+        type(slider_state), intent(inout) :: a, b
+        type(slider_state) :: other
+
+        call move_state(a, other)
+        call move_state(b, a)
+        call move_state(other, b)
+    end subroutine swap_states
+
+    pure subroutine move_state(from, to)
+        type(slider_state), intent(inout) :: from, to
+
+        to%time = from%time
+        to%drive = from%drive
+        to%normal = from%normal
+        call move_alloc(from%x, to%x)
+        call move_alloc(from%v, to%v)
+        call move_alloc(from%a, to%a)
+        call move_alloc(from%spring, to%spring)
+        call move_alloc(from%friction, to%friction)
+        call move_alloc(from%statev, to%statev)
+    end subroutine move_state
 
     !> Books the step from `old` to `new`: works by the mean force over the step, or by Simpson's
     !> rule if the state half-way is known.
@@ -191,9 +348,10 @@ contains
                 + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
         end if
         energy%kinetic = 0.5_dp * self%mass * sum(new%v**2)
-        energy%spring = 0.5_dp * sum(new%spring**2) / self%stiffness
-        energy%contact = 0.5_dp * self%area * self%props(3) * sum(new%statev(statev_u_et, :)**2)
-        energy%dissipated = self%area * sum(new%statev(statev_dissipation, :))
+        energy%spring = 0.5_dp * sum(new%spring**2) / self%stiffness &
+            + self%coupling_energy(new%x)
+        energy%contact = 0.5_dp * self%area * self%props(3) * sum(new%statev(:, statev_u_et)**2)
+        energy%dissipated = self%area * sum(new%statev(:, statev_dissipation))
     end subroutine account
 
     !> What the balance does not explain: the error of the time integration.

@@ -9,7 +9,8 @@ module step_control
         statev_slip, statev_status
     use loading_programme, only : programme
     use run_settings, only : settings
-    use slider_system, only : apply_normal_traction, slider, slider_state
+    use slider_system, only : apply_normal_traction, set_accelerations, slider, &
+        slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
     implicit none
     private
@@ -236,9 +237,9 @@ contains
         associate (a => self%halves, b => self%whole, s => self%system)
             error = maxval(max(s%stiffness * abs(a%x - b%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(a%v - b%v), &
-                s%stiffness * abs(a%statev(statev_slip, :) - b%statev(statev_slip, :)), &
-                self%force_scale / s%props(4) * abs(a%statev(statev_mu, :) &
-                - b%statev(statev_mu, :))))
+                s%stiffness * abs(a%statev(:, statev_slip) - b%statev(:, statev_slip)), &
+                self%force_scale / s%props(4) * abs(a%statev(:, statev_mu) &
+                - b%statev(:, statev_mu))))
         end associate
         error = error / ((2**self%order - 1) * self%tolerated)
     end function error_of
@@ -256,19 +257,18 @@ contains
         if (self%stiffness * dt**2 > self%system%mass) return
         weight = 1.0_dp / (2**self%order - 1)
         new%statev = new%statev + weight * (new%statev - self%whole%statev)
-        new%statev(statev_status, :) = self%halves%statev(statev_status, :)
-        associate (mu => new%statev(statev_mu, :), r => new%statev(statev_r, :))
+        new%statev(:, statev_status) = self%halves%statev(:, statev_status)
+        associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
             mu = min(self%system%props(4), max(self%system%props(5), mu))
             r = min(1.0_dp, max(0.0_dp, r))
         end associate
-        new%statev(statev_slip, :) = max(0.0_dp, new%statev(statev_slip, :))
-        new%statev(statev_dissipation, :) = max(0.0_dp, new%statev(statev_dissipation, :))
+        new%statev(:, statev_slip) = max(0.0_dp, new%statev(:, statev_slip))
+        new%statev(:, statev_dissipation) = max(0.0_dp, new%statev(:, statev_dissipation))
         new%x = new%x + weight * (new%x - self%whole%x)
         new%v = new%v + weight * (new%v - self%whole%v)
         new%spring = self%system%stiffness * (new%drive - new%x)
         new%friction = new%friction + weight * (new%friction - self%whole%friction)
-        if (self%system%mass > 0.0_dp) new%a = (new%spring - self%system%damping * new%v &
-            - new%friction) / self%system%mass
+        call set_accelerations(self%system, new)
     end subroutine extrapolate
 
     !> When the block turned round within the last step, if it stuck or slipped differently since:
@@ -279,8 +279,8 @@ contains
         real(dp) :: time   !! [T]; huge without such a moment
 
         time = huge(time)
-        associate (before => old%statev(statev_status, :), &
-            after => self%halves%statev(statev_status, :))
+        associate (before => old%statev(:, statev_status), &
+            after => self%halves%statev(:, statev_status))
             if (all(nint(before) == nint(after))) return
         end associate
         time = turn(old, self%middle)

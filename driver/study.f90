@@ -1,6 +1,7 @@
 !> The program's two verbs: check an input file, and run it.
 module study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64, output_unit
+    use chain_picture, only : draw_catalogue, draw_fields
     use checkpoint, only : read_checkpoint, snapshot
     use command_line, only : command
     use namelist_input, only : namelist_file, read_namelist_file
@@ -67,8 +68,8 @@ contains
         type(csv_recorder) :: records
         type(outcome) :: result
         type(snapshot) :: from
-        character(len=:), allocatable :: problem, base
-        integer(int64) :: bytes(2)
+        character(len=:), allocatable :: problem, base, fields
+        integer(int64) :: bytes(3)
         integer :: rows
 
         call check_input(wanted, run, exit_status)
@@ -76,6 +77,8 @@ contains
 
         exit_status = exit_bad_input
         base = wanted%output // '/' // wanted%stem
+        fields = ''
+        if (run%fields > 0) fields = base // '_fields.csv'
         if (.not. make_directory(wanted%output)) then
             write (error_unit, '(3a)') "stickslip: cannot write to the directory '", &
                 wanted%output, "'"
@@ -88,9 +91,10 @@ contains
                 write (error_unit, '(2a)') 'stickslip: cannot resume: ', problem
                 return
             end if
-            call records%go_on(base // '.csv', base // '_events.csv', rows, bytes)
+            call records%go_on(base // '.csv', base // '_events.csv', fields, rows, bytes)
         else
-            call records%start(base // '.csv', base // '_events.csv')
+            call records%start(base // '.csv', base // '_events.csv', run%chain%n_blocks > 1, &
+                fields)
         end if
         if (records%failed()) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
@@ -118,6 +122,10 @@ contains
         end if
         if (.not. wanted%plot) return
         call draw_picture(wanted%output, wanted%stem, problem)
+        if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(wanted%output, &
+            wanted%stem, problem)
+        if (len(problem) == 0 .and. run%fields > 0) call draw_fields(wanted%output, wanted%stem, &
+            run%chain%slip_rate, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_input
 
@@ -136,7 +144,8 @@ contains
         else
             tighter%dt = 0.5_dp * run%dt
         end if
-        call nowhere%start('/dev/null', '/dev/null')
+        call nowhere%start('/dev/null', '/dev/null', .false., '')
+        tighter%fields = 0
         call simulate(tighter, nowhere, .false., reference)
         call nowhere%finish()
         if (len(reference%failure) > 0) then

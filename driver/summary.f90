@@ -30,6 +30,11 @@ contains
             result%snap_backs, &
             ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
         write (output_unit, '(a, i0)') 'slip events        ', all%events
+        if (run%chain%n_blocks > 1) then
+            write (output_unit, '(a, i0)') 'events of blocks   ', result%chain_events
+            call line('largest moment     ', result%largest_moment, &
+                min(1, result%chain_events), '[L^3]')
+        end if
         call line('mean period        ', all%period, all%recurrences, '[T]')
         call line('mean stress drop   ', all%force_drop / run%area, all%events, '[F/L^2]')
         call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')

@@ -1,19 +1,28 @@
 !> One step of Newmark's or the generalised-alpha method, with equilibrium by Newton-Raphson on the
-!> consistent tangent (docs/theory.md, section 7). The linear systems are LAPACK's.
+!> consistent tangent (docs/theory.md, section 7).
 module time_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_no_convergence, friction_ok, friction_snap_back
-    use slider_system, only : friction_forces, slider, slider_state
+    use chain_solver, only : chain_matrix
+    use slider_system, only : ends_free, ends_periodic, friction_forces, slider, slider_state
     implicit none
     private
 
     public :: generalised_alpha, newmark, step_report
+
+    !> Room for a step, kept from one to the next; one number a block.
+    type :: workspace
+        real(dp), allocatable, dimension(:) :: dx, dx_old, correction, residual, tangent, &
+            rest_of_old
+        type(chain_matrix) :: matrix
+    end type workspace
 
     type :: newmark
         real(dp) :: beta = 0.25_dp, gamma = 0.5_dp   !! mean acceleration
         real(dp) :: tolerance = 1.0e-10_dp   !! of the residual, relative to the largest force
         integer :: max_iterations = 25
         real(dp) :: alpha_m = 0.0_dp, alpha_f = 0.0_dp   !! parts of the old state in the balance
+        type(workspace) :: work
     contains
         procedure :: step
     end type newmark
@@ -28,17 +37,6 @@ module time_integrator
         real(dp) :: residual(0:most_shown) = 0.0_dp   !! relative, before each iteration and at the
                                                       !! end
     end type step_report
-
-    interface
-        !> LAPACK: tridiagonal system by Gaussian elimination with partial pivoting.
-        pure subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
-            import :: dp
-            implicit none
-            integer, intent(in) :: n, nrhs, ldb
-            real(dp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
-            integer, intent(out) :: info
-        end subroutine dgtsv
-    end interface
 
 contains
 
@@ -64,7 +62,7 @@ contains
     !> velocity from dx = dt ((1 - gamma) v_old + gamma v_new). Where that balance breaks down,
     !> because the force that the block meets falls faster than the spring's, the step fails.
     subroutine step(self, system, drive, normal, dt, old, new, report, guess)
-        class(newmark), intent(in) :: self
+        class(newmark), intent(inout) :: self
         type(slider), intent(in) :: system
         real(dp), intent(in) :: drive            !! position of the drive at the end [L]
         real(dp), intent(in) :: normal           !! normal traction at the end [F/L^2]
@@ -74,100 +72,143 @@ contains
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements at the end [L]
         integer, parameter :: max_halvings = 8
-        real(dp), dimension(size(old%x)) :: dx, dx_old, correction, residual, tangent, below, &
-            diagonal, above, rest_of_old
         real(dp) :: du_n, inertia, norm, norm_old, scale
-        integer :: halving, info, n
-        logical :: inertial
+        integer :: halving
+        logical :: inertial, solved
 
-        n = size(old%x)
         report%iterations = 0
         inertial = system%mass > 0.0_dp
         if (inertial) then
             inertia = (1.0_dp - self%alpha_m) * system%mass / (self%beta * dt**2) &
                 + (1.0_dp - self%alpha_f) * system%damping * self%gamma / (self%beta * dt)
-            rest_of_old = self%alpha_f * (old%spring - system%damping * old%v - old%friction) &
-                - self%alpha_m * system%mass * old%a
         else
             inertia = system%damping / (self%gamma * dt)
-            rest_of_old = 0.0_dp
         end if
         du_n = system%penetration_step(old%normal, normal)
         new%time = old%time + dt
         new%drive = drive
         new%normal = normal
 
-        if (present(guess)) then
-            dx = guess - old%x
-        else
-            dx = dt * old%v + 0.5_dp * dt**2 * old%a
-        end if
-        call evaluate()
-        if (report%status < 0) return
-        do
-            report%residual(min(report%iterations, most_shown)) = norm / max(scale, tiny(scale))
-            if (norm <= self%tolerance * scale) exit
-            if (report%iterations == self%max_iterations) then
-                report%status = friction_no_convergence
-                return
+        call make_room(self%work, size(old%x), system)
+        associate (w => self%work)
+            if (present(guess)) then
+                w%dx = guess - old%x
+            else
+                w%dx = dt * old%v + 0.5_dp * dt**2 * old%a
             end if
+            call weigh_old_state(w%rest_of_old)
+            call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
+            if (report%status < 0) return
+            do
+                report%residual(min(report%iterations, most_shown)) = norm / max(scale, tiny(scale))
+                if (norm <= self%tolerance * scale) exit
+                report%status = friction_no_convergence
+                if (report%iterations == self%max_iterations) return
+                w%matrix%diagonal = inertia + (1.0_dp - self%alpha_f) * (system%stiffness &
+                    + w%tangent)
+                if (.not. inertial .and. any(w%matrix%diagonal <= 0.0_dp)) return
+                call add_coupling_stiffness(w%matrix)
+                w%correction = w%residual
+                call w%matrix%solve(w%correction, solved)
+                if (.not. solved) return
+                report%status = friction_ok
+                report%iterations = report%iterations + 1
+                ! too small a correction to change the displacements: as exact as they get
+                if (all(abs(w%correction) <= epsilon(w%dx) * abs(old%x + w%dx))) exit
 
-            diagonal = inertia + (1.0_dp - self%alpha_f) * (system%stiffness + tangent)
-            if (.not. inertial .and. any(diagonal <= 0.0_dp)) then
-                report%status = friction_no_convergence
-                return
-            end if
-            correction = residual
-            below = 0.0_dp
-            above = 0.0_dp
-            call dgtsv(n, 1, below, diagonal, above, correction, n, info)
-            if (info /= 0) then
-                report%status = friction_no_convergence
-                return
-            end if
-            report%iterations = report%iterations + 1
-            ! too small a correction to change the displacements: as exact as they get
-            if (all(abs(correction) <= epsilon(dx) * abs(old%x + dx))) exit
-
-            dx_old = dx
-            norm_old = norm
-            do halving = 0, max_halvings
-                dx = dx_old + correction / 2**halving
-                call evaluate()
-                if (report%status < 0) return
-                if (norm < norm_old) exit
+                w%dx_old = w%dx
+                norm_old = norm
+                do halving = 0, max_halvings
+                    w%dx = w%dx_old + w%correction / 2**halving
+                    call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
+                    if (report%status < 0) return
+                    if (norm < norm_old) exit
+                end do
             end do
-        end do
-        report%stiffness = system%stiffness + maxval(tangent)
-        if (.not. inertial) call look_for_another_balance()
+            report%stiffness = system%stiffness + maxval(w%tangent) + 4.0_dp * system%coupling
+            if (.not. inertial) call look_for_another_balance(w%dx, w%tangent)
+        end associate
 
     contains
 
+        !> What the old state adds to the balance of forces.
+        subroutine weigh_old_state(rest)
+            real(dp), intent(inout) :: rest(:)   !! [F]
+
+            rest = 0.0_dp
+            if (.not. inertial) return
+            if (.not. (abs(self%alpha_f) > 0.0_dp .or. abs(self%alpha_m) > 0.0_dp)) return
+            rest = self%alpha_f * (old%spring - system%damping * old%v - old%friction) &
+                - self%alpha_m * system%mass * old%a
+            call system%add_coupling(old%x, self%alpha_f, rest)
+        end subroutine weigh_old_state
+
         !> State and force residual at the end of the step for the displacement increment `dx`.
-        subroutine evaluate()
-            new%x = old%x + dx
-            if (inertial) then
-                new%a = (dx - dt * old%v) / (self%beta * dt**2) &
-                    - (0.5_dp / self%beta - 1.0_dp) * old%a
-                new%v = old%v + dt * ((1.0_dp - self%gamma) * old%a + self%gamma * new%a)
-            else
-                new%v = (dx / dt - (1.0_dp - self%gamma) * old%v) / self%gamma
-            end if
-            new%spring = system%stiffness * (drive - new%x)
+        subroutine evaluate(dx, rest_of_old, tangent, residual)
+            real(dp), intent(in), contiguous :: dx(:), rest_of_old(:)
+            real(dp), intent(inout), contiguous :: tangent(:), residual(:)
+            integer :: i
+
+            call move_to(dx)
             call friction_forces(system, old%statev, du_n, dx, dt, new%statev, new%friction, &
                 tangent, report%status)
-            residual = (1.0_dp - self%alpha_f) * (new%spring - system%damping * new%v &
-                - new%friction) - (1.0_dp - self%alpha_m) * system%mass * new%a + rest_of_old
-            norm = maxval(abs(residual))
-            scale = maxval(abs(new%spring) + abs(system%damping * new%v) + abs(new%friction) &
-                + abs(system%mass * new%a))
+            if (report%status < 0) return
+            scale = 0.0_dp
+            do i = 1, size(dx)
+                residual(i) = (1.0_dp - self%alpha_f) * (new%spring(i) - system%damping &
+                    * new%v(i) - new%friction(i)) - (1.0_dp - self%alpha_m) * system%mass &
+                    * new%a(i) + rest_of_old(i)
+                scale = max(scale, abs(new%spring(i)) + abs(system%damping * new%v(i)) &
+                    + abs(new%friction(i)) + abs(system%mass * new%a(i)))
+            end do
+            call system%add_coupling(new%x, 1.0_dp - self%alpha_f, residual)
+            norm = 0.0_dp
+            do i = 1, size(dx)
+                norm = max(norm, abs(residual(i)))
+            end do
         end subroutine evaluate
+
+        !> Newmark's formulas, and the drive springs.
+        subroutine move_to(dx)
+            real(dp), intent(in), contiguous :: dx(:)   !! [L]
+            integer :: i
+
+            do i = 1, size(dx)
+                new%x(i) = old%x(i) + dx(i)
+                if (inertial) then
+                    new%a(i) = (dx(i) - dt * old%v(i)) / (self%beta * dt**2) &
+                        - (0.5_dp / self%beta - 1.0_dp) * old%a(i)
+                    new%v(i) = old%v(i) + dt * ((1.0_dp - self%gamma) * old%a(i) &
+                        + self%gamma * new%a(i))
+                else
+                    new%v(i) = (dx(i) / dt - (1.0_dp - self%gamma) * old%v(i)) / self%gamma
+                end if
+                new%spring(i) = system%stiffness * (drive - new%x(i))
+            end do
+        end subroutine move_to
+
+        subroutine add_coupling_stiffness(matrix)
+            type(chain_matrix), intent(inout) :: matrix
+            real(dp) :: k
+            integer :: n
+
+            k = (1.0_dp - self%alpha_f) * system%coupling
+            matrix%beside = -k
+            if (k <= 0.0_dp) return
+            n = size(matrix%diagonal)
+            matrix%diagonal = matrix%diagonal + 2.0_dp * k
+            if (system%ends /= ends_free) return
+            matrix%diagonal(1) = matrix%diagonal(1) - k
+            matrix%diagonal(n) = matrix%diagonal(n) - k
+        end subroutine add_coupling_stiffness
 
         !> The forces must fall all the way from no displacement to the one found: otherwise there
         !> is another balance before it, and no quasi-static motion leads past that.
-        subroutine look_for_another_balance()
+        subroutine look_for_another_balance(dx, tangent)
+            real(dp), intent(in) :: dx(:)            !! [L]
+            real(dp), intent(inout) :: tangent(:)    !! [F/L]
             integer, parameter :: samples = 8
-            real(dp) :: statev(size(old%statev, 1), n), force(n)
+            real(dp) :: statev(size(dx), size(old%statev, 2)), force(size(dx))
             integer :: i, status
 
             do i = 1, samples
@@ -182,5 +223,20 @@ contains
         end subroutine look_for_another_balance
 
     end subroutine step
+
+    pure subroutine make_room(work, n, system)
+        type(workspace), intent(inout) :: work
+        integer, intent(in) :: n                !! blocks
+        type(slider), intent(in) :: system
+
+        if (allocated(work%dx)) then
+            if (size(work%dx) == n) return
+            deallocate (work%dx, work%dx_old, work%correction, work%residual, work%tangent, &
+                work%rest_of_old)
+        end if
+        allocate (work%dx(n), work%dx_old(n), work%correction(n), work%residual(n), &
+            work%tangent(n), work%rest_of_old(n))
+        call work%matrix%make_room(n, system%ends == ends_periodic .and. n > 1)
+    end subroutine make_room
 
 end module time_integrator

@@ -1,0 +1,93 @@
+!> Linear systems of a chain: symmetric, tridiagonal with one number beside the diagonal, and with
+!> that number in the two corners if the chain is closed to a ring. By LAPACK, in a time that is
+!> proportional to the number of blocks.
+module chain_solver
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    implicit none
+    private
+
+    public :: chain_matrix
+
+    type :: chain_matrix
+        logical :: ring = .false.
+        real(dp) :: beside = 0.0_dp              !! the number beside the diagonal
+        real(dp), allocatable :: diagonal(:)     !! destroyed by the solution
+        real(dp), allocatable, private :: below(:), above(:), columns(:, :)
+    contains
+        procedure :: make_room, solve
+    end type chain_matrix
+
+    interface
+        !> LAPACK: tridiagonal system by Gaussian elimination with partial pivoting.
+        pure subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
+            import :: dp
+            implicit none
+            integer, intent(in) :: n, nrhs, ldb
+            real(dp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
+            integer, intent(out) :: info
+        end subroutine dgtsv
+    end interface
+
+contains
+
+    !> For `n` rows; a ring has two or more.
+    pure subroutine make_room(self, n, ring)
+        class(chain_matrix), intent(inout) :: self
+        integer, intent(in) :: n
+        logical, intent(in) :: ring
+
+        self%ring = ring
+        self%diagonal = spread(0.0_dp, 1, n)
+        self%below = self%diagonal
+        self%above = self%diagonal
+        if (ring) self%columns = reshape(spread(0.0_dp, 1, 2 * n), [n, 2])
+    end subroutine make_room
+
+    !> Turns the right-hand side into the solution; false if the matrix is singular.
+    subroutine solve(self, x, solved)
+        class(chain_matrix), intent(inout) :: self
+        real(dp), intent(inout), contiguous :: x(:)
+        logical, intent(out) :: solved
+        integer :: info
+
+        self%below = self%beside
+        self%above = self%beside
+        if (self%ring) then
+            call solve_ring(self, x, info)
+        else
+            call dgtsv(size(x), 1, self%below, self%diagonal, self%above, x, size(x), info)
+        end if
+        solved = info == 0
+    end subroutine solve
+
+    !> The corners as a matrix of rank one, p q^T with p = (g, 0, ..., b) and q = (1, 0, ..., b/g),
+    !> added to a tridiagonal one (Sherman and Morrison). g = -d(1) keeps clear of cancellation.
+    pure subroutine solve_ring(self, x, info)
+        class(chain_matrix), intent(inout) :: self
+        real(dp), intent(inout) :: x(:)
+        integer, intent(out) :: info
+        real(dp) :: b, g, denominator
+        integer :: n
+
+        n = size(x)
+        b = self%beside
+        g = -self%diagonal(1)
+        if (.not. abs(g) > 0.0_dp) g = -b
+        self%diagonal(1) = self%diagonal(1) - g
+        self%diagonal(n) = self%diagonal(n) - b**2 / g
+        self%columns(:, 1) = x
+        self%columns(:, 2) = 0.0_dp
+        self%columns(1, 2) = g
+        self%columns(n, 2) = b
+        call dgtsv(n, 2, self%below, self%diagonal, self%above, self%columns, n, info)
+        if (info /= 0) return
+        associate (y => self%columns(:, 1), z => self%columns(:, 2))
+            denominator = 1.0_dp + z(1) + b * z(n) / g
+            info = 1
+            if (.not. abs(denominator) > 0.0_dp) return
+            x = y - (y(1) + b * y(n) / g) / denominator * z
+        end associate
+        info = 0
+    end subroutine solve_ring
+
+end module chain_solver
