@@ -39,15 +39,15 @@ contains
         type(slider_state), intent(in) :: old, new
         type(chain_event), allocatable, intent(out) :: ended(:)
         real(dp) :: least   !! slip in the step that counts [L]
+        real(dp) :: slip    !! of a block in the step [L]
         integer :: i, k
 
         k = 1
         self%events(:self%count)%under_way = .false.
         least = self%slip_rate * (new%time - old%time)
         do i = 1, size(new%x)
-            if (new%statev(i, statev_slip) - old%statev(i, statev_slip) > least) &
-                call take_in(self, i, new%statev(i, statev_slip) - old%statev(i, statev_slip), &
-                old%time, new%time, k)
+            slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
+            if (slip > least) call take_in(self, i, slip, old%time, new%time, k)
         end do
         associate (all => self%events(:self%count))
             ended = pack(all, .not. all%under_way)

@@ -49,6 +49,8 @@ contains
         call script%write_line('set cblabel "slip rate [L/T]" offset 1')
         call script%write_line('set rmargin at screen 0.86')
         call script%write_line('set lmargin at screen 0.08')
+        call script%write_line('set tmargin at screen 0.93')
+        call script%write_line('set bmargin at screen 0.1')
         call script%write_line('set logscale cb')
         call script%write_line('set cbrange [least:*]')
         call script%write_line('set palette defined (0 "white", 4 "#a6bddb", 6 "#0072b2", ' &

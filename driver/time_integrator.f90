@@ -104,10 +104,8 @@ contains
                 if (norm <= self%tolerance * scale) exit
                 report%status = friction_no_convergence
                 if (report%iterations == self%max_iterations) return
-                w%matrix%diagonal = inertia + (1.0_dp - self%alpha_f) * (system%stiffness &
-                    + w%tangent)
+                call fill(w%matrix, w%tangent)
                 if (.not. inertial .and. any(w%matrix%diagonal <= 0.0_dp)) return
-                call add_coupling_stiffness(w%matrix)
                 w%correction = w%residual
                 call w%matrix%solve(w%correction, solved)
                 if (.not. solved) return
@@ -147,6 +145,7 @@ contains
         subroutine evaluate(dx, rest_of_old, tangent, residual)
             real(dp), intent(in), contiguous :: dx(:), rest_of_old(:)
             real(dp), intent(inout), contiguous :: tangent(:), residual(:)
+            real(dp) :: farthest
             integer :: i
 
             call move_to(dx)
@@ -154,13 +153,18 @@ contains
                 tangent, report%status)
             if (report%status < 0) return
             scale = 0.0_dp
+            farthest = 0.0_dp
             do i = 1, size(dx)
                 residual(i) = (1.0_dp - self%alpha_f) * (new%spring(i) - system%damping &
                     * new%v(i) - new%friction(i)) - (1.0_dp - self%alpha_m) * system%mass &
                     * new%a(i) + rest_of_old(i)
                 scale = max(scale, abs(new%spring(i)) + abs(system%damping * new%v(i)) &
                     + abs(new%friction(i)) + abs(system%mass * new%a(i)))
+                farthest = max(farthest, abs(new%x(i)))
             end do
+            ! the forces of stiff springs between neighbours are no better known than by round-off
+            scale = max(scale, 8.0_dp * epsilon(scale) * system%coupling * farthest &
+                / self%tolerance)
             call system%add_coupling(new%x, 1.0_dp - self%alpha_f, residual)
             norm = 0.0_dp
             do i = 1, size(dx)
@@ -187,20 +191,22 @@ contains
             end do
         end subroutine move_to
 
-        subroutine add_coupling_stiffness(matrix)
+        !> The derivative of the residual, with the opposite sign.
+        subroutine fill(matrix, tangent)
             type(chain_matrix), intent(inout) :: matrix
+            real(dp), intent(in) :: tangent(:)   !! of the contacts [F/L]
             real(dp) :: k
             integer :: n
 
             k = (1.0_dp - self%alpha_f) * system%coupling
             matrix%beside = -k
-            if (k <= 0.0_dp) return
-            n = size(matrix%diagonal)
-            matrix%diagonal = matrix%diagonal + 2.0_dp * k
+            matrix%diagonal = inertia + 2.0_dp * k + (1.0_dp - self%alpha_f) &
+                * (system%stiffness + tangent)
             if (system%ends /= ends_free) return
+            n = size(tangent)
             matrix%diagonal(1) = matrix%diagonal(1) - k
             matrix%diagonal(n) = matrix%diagonal(n) - k
-        end subroutine add_coupling_stiffness
+        end subroutine fill
 
         !> The forces must fall all the way from no displacement to the one found: otherwise there
         !> is another balance before it, and no quasi-static motion leads past that.

@@ -1,0 +1,212 @@
+"""Chains of blocks: against one block, against themselves turned round, and what they leave behind.
+
+STICKSLIP names the program.
+"""
+import random
+import signal
+import time
+import unittest
+
+from test_long_runs import LongRun
+from test_program import Program, namelist
+
+RUN = {('time', 't_end'): '6', ('output', 'interval'): '50', ('chain', 'n_blocks'): '20',
+       ('chain', 'coupling'): '3'}
+
+
+class Chain(Program):
+    def run_chain(self, changes, *arguments):
+        result = self.run_text(namelist({**RUN, **changes}), '--no-plot', *arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        return result.stdout
+
+    def series(self):
+        return [[float(value) for value in row.values()] for row in self.rows('case_out/case.csv')]
+
+    def slips(self):
+        """Slip of the blocks, time by time."""
+        times = {}
+        for row in self.rows('case_out/case_fields.csv'):
+            times.setdefault(row['time'], []).append(float(row['slip']))
+        return list(times.values())
+
+    def assert_close(self, one, other, part):
+        """Column by column, as parts of the largest number in a column."""
+        self.assertEqual(len(one), len(other))
+        for a, b in zip(zip(*one), zip(*other)):
+            largest = max(map(abs, a)) or 1
+            self.assertLess(max(abs(x - y) for x, y in zip(a, b)), part * largest)
+
+
+class Motion(Chain):
+    def test_a_chain_of_one_block_is_the_single_slider(self):
+        self.run_chain({('chain', 'n_blocks'): '1'})
+        chain = self.series()
+        self.run_text(namelist({key: RUN[key] for key in RUN if key[0] != 'chain'}), '--no-plot')
+        self.assertEqual(chain, self.series())
+
+    def test_identical_blocks_move_as_one(self):
+        # by the routine for one block and by the batch, whose logarithms differ in the last bit;
+        # events amplify that, and Newton's tolerance of 1e-10, by the order of 1e3
+        self.run_chain({('chain', 'n_blocks'): '1'})
+        one = self.series()
+        for blocks in ('2', '700'):
+            for ends in ("'free'", "'periodic'"):
+                self.run_chain({('chain', 'n_blocks'): blocks, ('chain', 'ends'): ends})
+                self.assert_close(one, self.series(), 1e-6)
+
+    def test_strongly_coupled_blocks_move_as_one_of_their_mean_strength(self):
+        # their difference is the scatter of strength over the coupling: 1e-7 of a slip
+        self.run_chain({('chain', 'n_blocks'): '2', ('chain', 'coupling'): '1e7',
+                        ('chain', 'scatter'): '0.2', ('output', 'fields'): '50'})
+        for first, second in self.slips():
+            self.assertAlmostEqual(first, second, delta=5e-3)   # R differs a little: 1/m of slip
+        self.assertGreater(first, 1.0)
+
+    def test_a_fixed_wall_holds_its_neighbours_back(self):
+        self.run_chain({('chain', 'ends'): "'fixed'", ('output', 'fields'): '50'})
+        last = self.slips()[-1]
+        self.assertLess(last[0], 0.8 * last[10])
+        for a, b in zip(last, reversed(last)):
+            self.assertAlmostEqual(a, b, delta=1e-6 * last[10])
+
+    def test_energy_balance_with_coupling_closes_with_the_step(self):
+        for ends in ("'free'", "'fixed'", "'periodic'"):
+            rest = []
+            for dt in ('4e-4', '1e-4'):
+                said = self.run_chain({('chain', 'scatter'): '0.3', ('chain', 'ends'): ends,
+                                       ('time', 't_end'): '4.5', ('time', 'dt'): dt})
+                work, left = (float(said.split(word)[1].split()[0])
+                              for word in ('work of the drive', 'unbalanced'))
+                rest.append(abs(left) / work)
+            self.assertLess(rest[1], 0.4 * rest[0])   # first order: a quarter
+            self.assertLess(rest[1], 2e-3)
+
+    def test_the_seed_decides_and_nothing_else(self):
+        found = []
+        for seed in ('1', '1', '2'):
+            self.run_chain({('chain', 'scatter'): '0.3', ('chain', 'seed'): seed})
+            found.append(self.series())
+        self.assertEqual(found[0], found[1])
+        self.assertNotEqual(found[0], found[2])
+
+    def test_adaptive_steps_agree_with_small_fixed_ones(self):
+        late = []
+        for change in ({('time', 'dt'): '5e-5', ('output', 'interval'): '1000000'},
+                       {('time', 'rtol'): '1e-6', ('output', 'interval'): '1000000'}):
+            self.run_chain({('chain', 'scatter'): '0.3', ('chain', 'n_blocks'): '20',
+                            ('time', 't_end'): '3.2', **change})
+            late.append(self.series()[-1])
+        self.assertAlmostEqual(late[0][5], late[1][5], delta=0.02 * late[1][5])   # spring force
+
+
+class Catalogue(Chain):
+    def test_a_chain_that_moves_as_one_has_events_of_all_its_blocks(self):
+        self.run_chain({('output', 'fields'): '1'})
+        rows = self.rows('case_out/case_events.csv')
+        self.assertEqual(','.join(rows[0]), 'onset,duration,first_block,blocks,slip,moment,peak_velocity')
+        self.assertEqual((rows[0]['first_block'], rows[0]['blocks']), ('1', '20'))
+        self.assertAlmostEqual(float(rows[0]['moment']), 20 * float(rows[0]['slip']), delta=1e-12)
+        self.assertGreater(float(rows[0]['slip']), 0.5)
+
+    def test_uncoupled_blocks_that_touch_in_space_and_time_are_counted_together(self):
+        """The catalogue against one made from the fields of every step, by another way."""
+        self.run_chain({('chain', 'coupling'): '0.5', ('chain', 'scatter'): '0.5', ('chain', 'slip_rate'): '1',
+                        ('output', 'fields'): '1', ('time', 't_end'): '8'})
+        slips = self.slips()
+        # An event reaches over all blocks it has moved: what touches any of them while it lasts is its.
+        under_way, ended = [], []
+        for before, now in zip(slips, slips[1:]):
+            moving = [i for i in range(20) if now[i] - before[i] > 1e-3]
+            groups = [set([i]) for i in moving]
+            for event in under_way:
+                groups.append(event)
+            merged = True
+            while merged:
+                merged = False
+                for a in range(len(groups)):
+                    for b in range(a + 1, len(groups)):
+                        if any(abs(i - j) <= 1 for i in groups[a] for j in groups[b]):
+                            groups[a] |= groups.pop(b)
+                            merged = True
+                            break
+                    if merged:
+                        break
+            under_way = [g for g in groups if g & set(moving)]
+            ended += [g for g in groups if not g & set(moving)]
+        rows = self.rows('case_out/case_events.csv')
+        self.assertGreater(len(rows), 10)
+        self.assertEqual(sorted((min(g) + 1, len(g)) for g in ended),
+                         sorted((int(row['first_block']), int(row['blocks'])) for row in rows))
+
+    def test_pictures_are_drawn(self):
+        (self.folder / 'case.nml').write_text(namelist({**RUN, ('output', 'fields'): '50'}))
+        result = self.run_program('run', 'case.nml')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        for name in ('case', 'case_events', 'case_fields'):
+            self.assertEqual((self.folder / f'case_out/{name}.png').read_bytes()[:4], b'\x89PNG')
+
+
+class BadChains(Chain):
+    def test_every_key(self):
+        self.refused(namelist({('chain', 'n_blocks'): '0', ('chain', 'coupling'): '-1',
+                               ('chain', 'ends'): "'loose'", ('chain', 'scatter'): '1',
+                               ('chain', 'seed'): '-1', ('chain', 'slip_rate'): '0',
+                               ('chain', 'colour'): '3', ('output', 'fields'): '-1'}),
+                     '&chain n_blocks = 0: must be from 1', '&chain coupling = -1: must be >= 0',
+                     "&chain ends = 'loose': must be one of", '&chain scatter = 1: must be from 0 to 0.99',
+                     '&chain seed = -1: must be >= 0', '&chain slip_rate = 0: must be > 0',
+                     '&chain colour: unknown key', '&output fields = -1: must be >= 0')
+
+    def test_what_is_missing_or_does_not_fit(self):
+        self.refused(namelist({('chain', 'seed'): '1'}), '&chain n_blocks: is missing',
+                     '&chain coupling: is missing')
+        self.refused(namelist({**RUN, ('slider', 'mass'): '0'}), '&chain n_blocks = 20: must be 1 without a mass')
+        self.refused(namelist({**RUN, ('friction', 'mu_k'): '0.4'}), '&chain slip_rate: is missing')
+        self.refused(namelist({('output', 'fields'): '5'}), '&output fields = 5: needs a chain')
+        self.refused(namelist({**RUN, ('chain', 'n_blocks'): '2000', ('output', 'fields'): '5'}),
+                     '&output fields = 5: needs a chain of 1000 blocks or fewer')
+
+
+class Resumed(LongRun):
+    def stop_and_compare(self, changes):
+        (self.folder / 'case.nml').write_text(namelist({
+            **RUN, ('time', 't_end'): '8', ('output', 'fields'): '20', ('output', 'checkpoint'): '0.01',
+            ('chain', 'scatter'): '0.3', ('chain', 'ends'): "'periodic'", **changes}))
+        begun = time.monotonic()
+        process = self.start('--output', 'whole')
+        process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0)
+        seconds = time.monotonic() - begun
+        chance = random.Random(6)
+        stopped = 0
+        resume = []
+        for _ in range(3):
+            process = self.start('--output', 'parts', *resume)
+            self.wait_for('parts/case.csv', 100)   # it runs
+            time.sleep(chance.uniform(0.1, 0.25) * seconds)
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+            if process.returncode == 0:
+                break
+            stopped += 1
+            if (self.folder / 'parts/case.checkpoint').exists():
+                resume = ['--resume']
+        self.assertGreater(stopped, 0)
+        if process.returncode != 0:
+            self.assertEqual(resume, ['--resume'])
+            process = self.start('--output', 'parts', *resume)
+            self.assertEqual((process.communicate(timeout=120)[1], process.returncode), ('', 0))
+        for name in ('case.csv', 'case_events.csv', 'case_fields.csv'):
+            self.assertEqual((self.folder / 'parts' / name).read_bytes(),
+                             (self.folder / 'whole' / name).read_bytes())
+
+    def test_a_killed_chain_with_fixed_steps_resumes_to_the_same_bytes(self):
+        self.stop_and_compare({('time', 'dt'): '1e-4', ('output', 'fields'): '200'})
+
+    def test_a_killed_chain_with_adaptive_steps_resumes_to_the_same_bytes(self):
+        self.stop_and_compare({('time', 'rtol'): '1e-5', ('output', 'fields'): '200', ('time', 't_end'): '4'})
+
+
+if __name__ == '__main__':
+    unittest.main()
