@@ -22,7 +22,7 @@ contains
         character(len=*), parameter :: names(5) = ['subloading    ', 'coulomb       ', &
             'static_kinetic', 'rate_and_state', 'slip_weakening']
         character(len=:), allocatable :: law
-        real(dp) :: alpha_n, alpha_t
+        real(dp) :: alpha_n, alpha_t, tau_max
         real(dp), allocatable :: own(:)
         integer :: faults_before, number
 
@@ -47,7 +47,8 @@ contains
             number = law_subloading
             call read_subloading(file, own)
         end select
-        props = [real(number, dp), alpha_n, alpha_t, own]
+        call file%get_real(group, 'tau_max', tau_max, at_least(0.0_dp), default=0.0_dp)
+        props = [real(number, dp), alpha_n, alpha_t, own, tau_max]
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
 
@@ -68,7 +69,7 @@ contains
             default='backward_euler')
         number = scheme_backward_euler
         if (scheme == 'exact_rate') number = scheme_exact_rate
-        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp)]
+        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp), 0.0_dp]
         if (size(file%faults) > faults_before) return
         if (mu_0 < mu_k .or. mu_0 > mu_s) call file%reject(group, 'mu_0', &
             'must be from mu_k to mu_s')

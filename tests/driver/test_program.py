@@ -219,6 +219,12 @@ class Laws(Program):
                                        * math.exp((0.6 + 0.015 * math.log(theta / 10)) / 0.01))
                 self.assertAlmostEqual(new['mu'], mu, delta=1e-8)
 
+    def test_a_shear_cap_holds_for_every_law(self):
+        self.refused(law_namelist('coulomb', tau_max='-1'), '&friction tau_max = -1: must be >= 0')
+        for law in LAWS:
+            rows, _ = self.slide(law, tau_max='1.5')
+            self.assertAlmostEqual(max(row['friction_force'] for row in rows), 1.5, delta=1e-12)
+
     def test_constants_of_another_law_are_unknown_keys(self):
         for law in LAWS:
             self.refused(law_namelist(law, xi='1'), '&friction xi: unknown key')
