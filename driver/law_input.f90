@@ -4,7 +4,7 @@ module law_input
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_message, friction_update, law_coulomb, law_rate_state, &
         law_slip_weakening, law_static_kinetic, law_subloading, scheme_backward_euler, &
-        scheme_exact_rate, statev_size
+        scheme_exact_rate, statev_size, u_cotangent, u_logarithm, u_reciprocal
     use namelist_input, only : above, at_least, namelist_file
     implicit none
     private
@@ -55,9 +55,9 @@ contains
     subroutine read_subloading(file, own)
         type(namelist_file), intent(inout) :: file
         real(dp), allocatable, intent(out) :: own(:)
-        character(len=:), allocatable :: scheme
+        character(len=:), allocatable :: scheme, u_of_r
         real(dp) :: mu_s, mu_k, kappa, xi, m, mu_0
-        integer :: faults_before, number
+        integer :: faults_before, number, evolution
 
         faults_before = size(file%faults)
         call read_coefficients(file, mu_s, mu_k)
@@ -69,8 +69,15 @@ contains
             default='backward_euler')
         number = scheme_backward_euler
         if (scheme == 'exact_rate') number = scheme_exact_rate
-        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp), 0.0_dp]
+        call file%get_choice(group, 'u_of_r', u_of_r, ['logarithm ', 'cotangent ', 'reciprocal'], &
+            default='logarithm')
+        evolution = u_logarithm
+        if (u_of_r == 'cotangent') evolution = u_cotangent
+        if (u_of_r == 'reciprocal') evolution = u_reciprocal
+        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp), real(evolution, dp)]
         if (size(file%faults) > faults_before) return
+        if (number == scheme_exact_rate .and. evolution /= u_logarithm) call file%reject(group, &
+            'u_of_r', "must be 'logarithm' with scheme = 'exact_rate'")
         if (mu_0 < mu_k .or. mu_0 > mu_s) call file%reject(group, 'mu_0', &
             'must be from mu_k to mu_s')
     end subroutine read_subloading

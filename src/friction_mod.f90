@@ -20,6 +20,8 @@ module friction_mod
     use friction_shear_cap, only : capped_law
     use friction_slip_weakening_law, only : read_slip_weakening_law, slip_weakening_law
     use friction_subloading_exact_law, only : subloading_exact_law
+    use friction_subloading_general_law, only : subloading_general_law, u_cotangent, u_logarithm, &
+        u_reciprocal
     use friction_subloading_law, only : read_subloading_law, subloading_law
     implicit none
     private
@@ -43,6 +45,9 @@ module friction_mod
     !> Time integration of the subloading law: values of props(10).
     integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
     integer, parameter, public :: scheme_exact_rate = 1       !! exact for a constant slip rate
+
+    !> Evolution of R in the subloading law: values of props(11).
+    public :: u_logarithm, u_cotangent, u_reciprocal
 
     !> Material constants: places in `props` that all laws share.
     integer, parameter :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3, first_own_prop = 4
@@ -266,6 +271,7 @@ contains
         integer, intent(out) :: status
         type(subloading_law), target :: subloading
         type(subloading_exact_law), target :: exact
+        type(subloading_general_law), target :: general
         type(coulomb_law), target :: coulomb
         type(static_kinetic_law), target :: static_kinetic
         type(rate_state_law), target :: rate_state
@@ -295,9 +301,6 @@ contains
             call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
                 subloading, status)
             if (nprops >= prop_scheme) scheme = whole_number(props(prop_scheme))
-            if (nprops >= prop_u_of_r) then
-                if (abs(props(prop_u_of_r)) > 0.0_wp) status = friction_bad_property
-            end if
             select case (scheme)
             case (scheme_backward_euler)
                 surface => subloading
@@ -307,6 +310,15 @@ contains
             case default
                 status = friction_bad_property
             end select
+            if (nprops >= prop_u_of_r) then
+                general%u_of_r = whole_number(props(prop_u_of_r))
+                if (general%u_of_r /= u_logarithm) then
+                    general%subloading_law = subloading
+                    surface => general
+                    if (scheme /= scheme_backward_euler .or. (general%u_of_r /= u_cotangent &
+                        .and. general%u_of_r /= u_reciprocal)) status = friction_bad_property
+                end if
+            end if
         case (law_coulomb)
             call read_coulomb_law(nprops - first_own_prop + 1, props(first_own_prop), coulomb, &
                 status)

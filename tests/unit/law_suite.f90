@@ -32,7 +32,7 @@ module law_suite
     real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
     real(dp), parameter :: unused(most_own) = 0.0_dp
 
-    type(law_case), parameter :: laws(12) = [ &
+    type(law_case), parameter :: laws(14) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('Coulomb', law_coulomb, 1, [mu, unused(2:)], 'm', .false.), &
         law_case('static-kinetic', law_static_kinetic, 3, &
@@ -43,6 +43,10 @@ module law_suite
         [rate_state, 1.0_dp, theta_0, unused(8:)], 'mmddm-d', .true.), &
         law_case('slip-weakening', law_slip_weakening, 3, &
         [slip_weakening, unused(4:)], 'mmd', .false.), &
+        law_case('subloading, cotangent', law_subloading, 8, &
+        [subloading, 0.0_dp, 1.0_dp, unused(9:)], 'mmdddm--', .false.), &
+        law_case('subloading, reciprocal', law_subloading, 8, &
+        [subloading, 0.0_dp, 2.0_dp, unused(9:)], 'mmdddm--', .false.), &
         law_case('subloading, capped', law_subloading, 9, &
         [subloading, 0.0_dp, 0.0_dp, tau_max], 'mmdddm--d', .false.), &
         law_case('subloading, exact, capped', law_subloading, 9, &
