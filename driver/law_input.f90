@@ -4,7 +4,7 @@ module law_input
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_message, friction_update, law_coulomb, law_rate_state, &
         law_slip_weakening, law_static_kinetic, law_subloading, scheme_backward_euler, &
-        scheme_exact_rate, statev_size
+        scheme_exact_rate, statev_size, u_cotangent, u_logarithm, u_reciprocal
     use namelist_input, only : above, at_least, namelist_file
     implicit none
     private
@@ -22,7 +22,7 @@ contains
         character(len=*), parameter :: names(5) = ['subloading    ', 'coulomb       ', &
             'static_kinetic', 'rate_and_state', 'slip_weakening']
         character(len=:), allocatable :: law
-        real(dp) :: alpha_n, alpha_t
+        real(dp) :: alpha_n, alpha_t, tau_max
         real(dp), allocatable :: own(:)
         integer :: faults_before, number
 
@@ -47,7 +47,8 @@ contains
             number = law_subloading
             call read_subloading(file, own)
         end select
-        props = [real(number, dp), alpha_n, alpha_t, own]
+        call file%get_real(group, 'tau_max', tau_max, at_least(0.0_dp), default=0.0_dp)
+        props = [real(number, dp), alpha_n, alpha_t, own, tau_max]
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
 
@@ -74,9 +75,9 @@ contains
     subroutine read_subloading(file, own)
         type(namelist_file), intent(inout) :: file
         real(dp), allocatable, intent(out) :: own(:)
-        character(len=:), allocatable :: scheme
+        character(len=:), allocatable :: scheme, u_of_r
         real(dp) :: mu_s, mu_k, kappa, xi, m, mu_0
-        integer :: faults_before, number
+        integer :: faults_before, number, evolution
 
         faults_before = size(file%faults)
         call read_coefficients(file, mu_s, mu_k)
@@ -88,8 +89,15 @@ contains
             default='backward_euler')
         number = scheme_backward_euler
         if (scheme == 'exact_rate') number = scheme_exact_rate
-        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp)]
+        call file%get_choice(group, 'u_of_r', u_of_r, ['logarithm ', 'cotangent ', 'reciprocal'], &
+            default='logarithm')
+        evolution = u_logarithm
+        if (u_of_r == 'cotangent') evolution = u_cotangent
+        if (u_of_r == 'reciprocal') evolution = u_reciprocal
+        own = [mu_s, mu_k, kappa, xi, m, mu_0, real(number, dp), real(evolution, dp)]
         if (size(file%faults) > faults_before) return
+        if (number == scheme_exact_rate .and. evolution /= u_logarithm) call file%reject(group, &
+            'u_of_r', "must be 'logarithm' with scheme = 'exact_rate'")
         if (mu_0 < mu_k .or. mu_0 > mu_s) call file%reject(group, 'mu_0', &
             'must be from mu_k to mu_s')
     end subroutine read_subloading

@@ -106,24 +106,23 @@ contains
 
     end subroutine update_arrays_batch
 
-    !> May the kernel be used? It takes the subloading law in backward Euler, with
-    !> constants of ordinary size.
+    !> May the kernel be used? It takes the subloading law as its authors wrote it, without
+    !> options, with constants of ordinary size.
     pure subroutine prepare_kernel(this, props)
         type(batch), intent(inout) :: this
         real(wp), intent(in) :: props(this%nprops)
         real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
         real(wp) :: statev(statev_size), traction(3), tangent(3, 3)
-        integer :: status
+        integer :: status, last_option
 
-        if (this%nstatv < statev_size .or. this%nprops < 8 .or. this%nprops > prop_scheme) return
+        if (this%nstatv < statev_size .or. this%nprops < 8) return
         statev = 0.0_wp
         call update_arrays(3, [0.0_wp, 0.0_wp, 0.0_wp], this%dtime, this%nprops, props, &
             statev_size, statev, traction, tangent, status)
         if (status < 0) return   ! point by point, they all say so
         if (abs(props(prop_law) - law_subloading) > 0.0_wp) return
-        if (this%nprops == prop_scheme) then
-            if (abs(props(prop_scheme) - scheme_backward_euler) > 0.0_wp) return
-        end if
+        last_option = min(this%nprops, prop_tau_max(law_subloading))
+        if (any(abs(props(prop_scheme:last_option)) > 0.0_wp)) return
         this%constants(1:7) = props(2:8)
         this%constants(8) = props(4)
         if (this%nprops > 8) this%constants(8) = props(9)

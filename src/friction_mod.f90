@@ -17,8 +17,11 @@ module friction_mod
     use friction_coulomb_law, only : read_coulomb_law, coulomb_law
     use friction_static_kinetic_law, only : read_static_kinetic_law, static_kinetic_law
     use friction_rate_state_law, only : read_rate_state_law, rate_state_law
+    use friction_shear_cap, only : capped_law
     use friction_slip_weakening_law, only : read_slip_weakening_law, slip_weakening_law
     use friction_subloading_exact_law, only : subloading_exact_law
+    use friction_subloading_general_law, only : subloading_general_law, u_cotangent, u_logarithm, &
+        u_reciprocal
     use friction_subloading_law, only : read_subloading_law, subloading_law
     implicit none
     private
@@ -43,9 +46,16 @@ module friction_mod
     integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
     integer, parameter, public :: scheme_exact_rate = 1       !! exact for a constant slip rate
 
+    !> Evolution of R in the subloading law: values of props(11).
+    public :: u_logarithm, u_cotangent, u_reciprocal
+
     !> Material constants: places in `props` that all laws share.
     integer, parameter :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3, first_own_prop = 4
     integer, parameter :: prop_scheme = 10   !! of the subloading law; may be left out
+    integer, parameter :: prop_u_of_r = 11   !! likewise
+
+    !> Place of the shear cap, after the own constants of each law; may be left out, 0 means none.
+    integer, parameter :: prop_tau_max(5) = [12, 5, 7, 11, 7]
 
     !> Places in `statev`.
     integer, parameter, public :: statev_size = 8          !! least size
@@ -261,12 +271,14 @@ contains
         integer, intent(out) :: status
         type(subloading_law), target :: subloading
         type(subloading_exact_law), target :: exact
+        type(subloading_general_law), target :: general
         type(coulomb_law), target :: coulomb
         type(static_kinetic_law), target :: static_kinetic
         type(rate_state_law), target :: rate_state
         type(slip_weakening_law), target :: slip_weakening
+        type(capped_law), target :: capped
         class(law), pointer :: surface
-        integer :: scheme
+        integer :: number, scheme
         integer(int64) :: seen
 
         status = friction_bad_size
@@ -283,7 +295,8 @@ contains
         if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
 
         scheme = scheme_backward_euler
-        select case (whole_number(props(prop_law)))
+        number = whole_number(props(prop_law))
+        select case (number)
         case (law_subloading)
             call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
                 subloading, status)
@@ -297,6 +310,15 @@ contains
             case default
                 status = friction_bad_property
             end select
+            if (nprops >= prop_u_of_r) then
+                general%u_of_r = whole_number(props(prop_u_of_r))
+                if (general%u_of_r /= u_logarithm) then
+                    general%subloading_law = subloading
+                    surface => general
+                    if (scheme /= scheme_backward_euler .or. (general%u_of_r /= u_cotangent &
+                        .and. general%u_of_r /= u_reciprocal)) status = friction_bad_property
+                end if
+            end if
         case (law_coulomb)
             call read_coulomb_law(nprops - first_own_prop + 1, props(first_own_prop), coulomb, &
                 status)
@@ -318,6 +340,16 @@ contains
         end select
         if (status < 0) return
         surface%follows_path = scheme == scheme_exact_rate
+        if (nprops >= prop_tau_max(number)) then
+            capped%tau_max = props(prop_tau_max(number))
+            status = friction_bad_property
+            if (capped%tau_max < 0.0_wp) return
+            if (capped%tau_max > 0.0_wp) then
+                capped%inner => surface
+                capped%follows_path = .false.   ! its strength is not proportional to the pressure
+                surface => capped
+            end if
+        end if
         call update_point(surface, props, motion, n_tangential, statev, traction, tangent, status)
     end subroutine advance
 

@@ -219,6 +219,32 @@ class Laws(Program):
                                        * math.exp((0.6 + 0.015 * math.log(theta / 10)) / 0.01))
                 self.assertAlmostEqual(new['mu'], mu, delta=1e-8)
 
+    def test_r_approaches_one_by_the_function_asked_for(self):
+        self.refused(namelist({('friction', 'u_of_r'): "'linear'"}),
+                     "&friction u_of_r = 'linear': must be one of 'logarithm', 'cotangent', 'reciprocal'")
+        self.refused(namelist({('friction', 'u_of_r'): "'cotangent'", ('friction', 'scheme'): "'exact_rate'"}),
+                     "must be 'logarithm' with scheme = 'exact_rate'")
+        functions = {'logarithm': lambda r: -math.log(r), 'reciprocal': lambda r: 1 / r - 1,
+                     'cotangent': lambda r: 1 / math.tan(math.pi / 2 * r)}
+        for name, u in functions.items():
+            result = self.run_text(namelist({('friction', 'u_of_r'): f"'{name}'", ('time', 't_end'): '4.2'}),
+                                   '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            rows = [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case.csv')]
+            seen = 0
+            for old, new in zip(rows, rows[1:]):
+                slip = new['slip'] - old['slip']
+                if new['R'] - old['R'] > 1e-6 and slip > 1e-6:   # R falls back where it sticks
+                    self.assertAlmostEqual((new['R'] - old['R']) / (1000 * slip * u(new['R'])), 1, delta=1e-5)
+                    seen += 1
+            self.assertGreater(seen, 20)
+
+    def test_a_shear_cap_holds_for_every_law(self):
+        self.refused(law_namelist('coulomb', tau_max='-1'), '&friction tau_max = -1: must be >= 0')
+        for law in LAWS:
+            rows, _ = self.slide(law, tau_max='1.5')
+            self.assertAlmostEqual(max(row['friction_force'] for row in rows), 1.5, delta=1e-12)
+
     def test_constants_of_another_law_are_unknown_keys(self):
         for law in LAWS:
             self.refused(law_namelist(law, xi='1'), '&friction xi: unknown key')

@@ -12,35 +12,54 @@ module law_suite
     public :: exact_tangent, law_case, law_point, laws, random_law_point
 
     integer, parameter :: qp = real128
-    integer, parameter :: most_own = 7
+    integer, parameter :: most_own = 9
 
     type :: law_case
         character(len=26) :: name
         integer :: number            !! props(1)
         integer :: n_own             !! number of own constants, all with their optional ones
-        real(dp) :: own(most_own)    !! typical values, for N, mm, s
+        real(dp) :: own(most_own)    !! for N, mm, s
         character(len=most_own) :: spread   !! how a draw varies each: d over decades, m all by one
                                             !! factor up to 1 (friction coefficients), - not at all
         logical :: needs_time        !! refuses a tangential load without time
     end type law_case
 
-    real(dp), parameter :: none = 0.0_dp
+    ! Typical constants, some of which several cases share.
+    real(dp), parameter :: mu = 0.4_dp, theta_0 = 1.0e-2_dp, tau_max = 1.0_dp
+    real(dp), parameter :: subloading(6) = [mu, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp]
+    real(dp), parameter :: static_kinetic(3) = [mu, 0.2_dp, 0.1_dp]
+    real(dp), parameter :: rate_state(5) = [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, mu]
+    real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
+    real(dp), parameter :: unused(most_own) = 0.0_dp
 
-    type(law_case), parameter :: laws(7) = [ &
-        law_case('subloading', law_subloading, 6, &
-        [0.4_dp, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp, none], 'mmdddm-', .false.), &
+    type(law_case), parameter :: laws(15) = [ &
+        law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
-        [0.4_dp, 0.2_dp, 10.0_dp, 1.0_dp, 100.0_dp, 0.3_dp, 1.0_dp], 'mmdddm-', .false.), &
-        law_case('Coulomb', law_coulomb, 1, &
-        [0.4_dp, none, none, none, none, none, none], 'm------', .false.), &
+        [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
+        law_case('Coulomb', law_coulomb, 1, [mu, unused(2:)], 'm', .false.), &
         law_case('static-kinetic', law_static_kinetic, 3, &
-        [0.4_dp, 0.2_dp, 0.1_dp, none, none, none, none], 'mmd----', .true.), &
+        [static_kinetic, unused(4:)], 'mmd', .true.), &
         law_case('rate-and-state, ageing', law_rate_state, 7, &
-        [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, 0.4_dp, 0.0_dp, 1.0e-2_dp], 'mmddm-d', .true.), &
+        [rate_state, 0.0_dp, theta_0, unused(8:)], 'mmddm-d', .true.), &
         law_case('rate-and-state, slip', law_rate_state, 7, &
-        [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, 0.4_dp, 1.0_dp, 1.0e-2_dp], 'mmddm-d', .true.), &
+        [rate_state, 1.0_dp, theta_0, unused(8:)], 'mmddm-d', .true.), &
         law_case('slip-weakening', law_slip_weakening, 3, &
-        [0.4_dp, 0.2_dp, 1.0e-2_dp, none, none, none, none], 'mmd----', .false.)]
+        [slip_weakening, unused(4:)], 'mmd', .false.), &
+        law_case('subloading, cotangent', law_subloading, 8, &
+        [subloading, 0.0_dp, 1.0_dp, unused(9:)], 'mmdddm--', .false.), &
+        law_case('subloading, reciprocal', law_subloading, 8, &
+        [subloading, 0.0_dp, 2.0_dp, unused(9:)], 'mmdddm--', .false.), &
+        law_case('subloading, capped', law_subloading, 9, &
+        [subloading, 0.0_dp, 0.0_dp, tau_max], 'mmdddm--d', .false.), &
+        law_case('subloading, exact, capped', law_subloading, 9, &
+        [subloading, 1.0_dp, 0.0_dp, tau_max], 'mmdddm--d', .false.), &
+        law_case('Coulomb, capped', law_coulomb, 2, [mu, tau_max, unused(3:)], 'md', .false.), &
+        law_case('static-kinetic, capped', law_static_kinetic, 4, &
+        [static_kinetic, tau_max, unused(5:)], 'mmdd', .true.), &
+        law_case('rate-and-state, capped', law_rate_state, 8, &
+        [rate_state, 0.0_dp, theta_0, tau_max, unused(9:)], 'mmddm-dd', .true.), &
+        law_case('slip-weakening, capped', law_slip_weakening, 4, &
+        [slip_weakening, tau_max, unused(5:)], 'mmdd', .false.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point

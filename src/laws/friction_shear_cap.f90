@@ -1,0 +1,115 @@
+!> A shear cap for any friction law: the interface, or the softer of the two bodies, cannot carry
+!> more than `tau_max`, whatever the pressure,
+!>
+!>     resistance = min(resistance of the law, tau_max)
+!>
+!> The law's internal variables evolve as without the cap, with the slip that results. Where the cap
+!> holds, the traction depends neither on the slip nor on the pressure.
+module friction_shear_cap
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state, sliding
+    implicit none
+    private
+
+    public :: capped_law
+
+    type, extends(law) :: capped_law
+        class(law), pointer :: inner   !! the law without the cap
+        real(wp) :: tau_max            !! largest tangential traction, > 0 [F/L^2]
+    contains
+        procedure :: virgin
+        procedure :: admits
+        procedure :: rest
+        procedure :: slide
+        procedure :: weakening
+        procedure :: needs_time
+        procedure :: solve
+    end type capped_law
+
+contains
+
+    pure function virgin(self) result(state)
+        class(capped_law), intent(in) :: self
+        type(law_state) :: state
+
+        state = self%inner%virgin()
+    end function virgin
+
+    pure function admits(self, state) result(valid)
+        class(capped_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        logical :: valid
+
+        valid = self%inner%admits(state)
+    end function admits
+
+    pure subroutine rest(self, traction, pressure, dt, old, new, strength)
+        class(capped_law), intent(in) :: self
+        real(wp), intent(in) :: traction, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: strength
+
+        call self%inner%rest(traction, pressure, dt, old, new, strength)
+        strength = min(strength, self%tau_max)
+    end subroutine rest
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(capped_law), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+
+        call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        if (resistance < self%tau_max) return
+        resistance = self%tau_max
+        d_slip = 0.0_wp
+        d_pressure = 0.0_wp
+    end subroutine slide
+
+    !> No faster than the law's own resistance falls.
+    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+        class(capped_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: bound
+
+        bound = max(0.0_wp, self%inner%weakening(from, to, pressure, dt, old))
+    end function weakening
+
+    pure function needs_time(self) result(needs)
+        class(capped_law), intent(in) :: self
+        logical :: needs
+
+        needs = self%inner%needs_time()
+    end function needs_time
+
+    !> No equilibrium lies above the cap, so none at less slip than `s`, where the spring is down
+    !> at the cap: either that slip is one, or the law's own equilibrium beyond it.
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(capped_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+        type(law_state) :: at_rest
+        real(wp) :: s, strength
+
+        s = (trial - self%tau_max) / stiffness
+        if (s > 0.0_wp) then
+            call self%slide(s, pressure, dt, old, answer%state, answer%resistance, answer%d_slip, &
+                answer%d_pressure)
+            if (answer%resistance >= self%tau_max) then
+                answer%slip = s
+                solved = self%inner%weakening(s, trial / stiffness, pressure, dt, old) <= stiffness
+                return
+            end if
+            call self%inner%rest(trial, pressure, dt, old, at_rest, strength)
+            solved = .false.
+            if (trial <= strength) return   ! for the law alone this increment would not slip
+        end if
+        call self%inner%solve(trial, stiffness, pressure, dt, old, answer, solved)
+    end subroutine solve
+
+end module friction_shear_cap
