@@ -9,7 +9,7 @@ module law_input
     implicit none
     private
 
-    public :: read_friction
+    public :: is_subloading, read_friction, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -50,6 +50,23 @@ contains
         props = [real(number, dp), alpha_n, alpha_t, own]
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
+
+    pure function is_subloading(props) result(yes)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        logical :: yes
+
+        yes = nint(props(1)) == law_subloading
+    end function is_subloading
+
+    !> The coefficient that stands for the strength of the contact: the static one, or that of
+    !> steady sliding at the reference rate.
+    pure function typical_coefficient(props) result(mu)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp) :: mu                     !! [-]
+
+        mu = props(4)
+        if (nint(props(1)) == law_rate_state) mu = max(mu, props(8))
+    end function typical_coefficient
 
     subroutine read_subloading(file, own)
         type(namelist_file), intent(inout) :: file
