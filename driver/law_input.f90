@@ -9,7 +9,7 @@ module law_input
     implicit none
     private
 
-    public :: kinetic_coefficient, read_friction, typical_coefficient
+    public :: is_subloading, kinetic_coefficient, read_friction, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -52,14 +52,21 @@ contains
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
 
-    !> The friction coefficient of a surface at rest, or where the law has none, of a usual one: the
-    !> scale of forces.
+    pure function is_subloading(props) result(yes)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        logical :: yes
+
+        yes = nint(props(1)) == law_subloading
+    end function is_subloading
+
+    !> The coefficient that stands for the strength of the contact: the static one, or that of
+    !> steady sliding at the reference rate.
     pure function typical_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! of the friction routine
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
         real(dp) :: mu                     !! [-]
 
         mu = props(4)
-        if (nint(props(1)) == law_rate_state) mu = props(8)
+        if (nint(props(1)) == law_rate_state) mu = max(mu, props(8))
     end function typical_coefficient
 
     !> The friction coefficient that is left when the surface has slid far, where that is a constant

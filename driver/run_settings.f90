@@ -2,7 +2,7 @@
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_settings, only : chain, read_chain
-    use law_input, only : kinetic_coefficient, read_friction, typical_coefficient
+    use law_input, only : is_subloading, kinetic_coefficient, read_friction, typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use slider_system, only : initial_values
@@ -108,36 +108,53 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
         character(len=*), parameter :: group = 'initial'
-        real(dp) :: mu_k, mu_s, mu_0
-
         run%initial%any_given = file%has_group(group)
         if (.not. run%initial%any_given) return
-        mu_s = run%props(4)
-        mu_k = run%props(5)
-        mu_0 = run%props(9)
+        call read_initial_friction(file, run)
         associate (start => run%initial)
-            call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=mu_0)
-            call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
             call file%get_real(group, 'displacement', start%displacement, any_number(), &
                 default=0.0_dp)
             call file%get_real(group, 'velocity', start%velocity, any_number(), default=0.0_dp)
             call file%get_real(group, 'spring_force', start%spring_force, any_number(), &
                 default=0.0_dp)
             start%spring_given = file%given(group, 'spring_force')
-            if (start%mu < mu_k .or. start%mu > mu_s) call file%reject(group, 'mu', &
-                'must be from mu_k to mu_s')
             if (run%mass <= 0.0_dp) then
                 if (start%spring_given) call file%reject(group, 'spring_force', &
                     'needs a mass > 0: without, it is the friction force')
                 if (file%given(group, 'velocity')) call file%reject(group, 'velocity', &
                     'needs a mass > 0')
             end if
-            if (.not. allocated(run%drive%normal)) return
-            if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
-                call file%reject(group, 'r', 'must be 0 where the normal traction starts at 0')
-            end if
         end associate
     end subroutine read_initial
+
+    !> A law without R starts from the friction that `mu` mobilises, its own variable as virgin.
+    subroutine read_initial_friction(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'initial'
+        character(len=:), allocatable :: key
+
+        associate (start => run%initial, props => run%props)
+            start%has_r = is_subloading(props)
+            call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
+            if (start%has_r) then
+                key = 'r'
+                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=props(9))
+                if (start%mu < props(5) .or. start%mu > props(4)) call file%reject(group, 'mu', &
+                    'must be from mu_k to mu_s')
+            else
+                key = 'mu'
+                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=0.0_dp)
+                start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
+                if (file%given(group, 'r')) call file%reject(group, 'r', &
+                    'belongs to the law subloading')
+            end if
+            if (.not. allocated(run%drive%normal)) return
+            if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
+                call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
+            end if
+        end associate
+    end subroutine read_initial_friction
 
     subroutine read_time(file, run)
         type(namelist_file), intent(inout) :: file
@@ -208,9 +225,8 @@ contains
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
         run%order = 1
-        if (size(run%props) > 9) then
-            if (run%props(10) > 0.0_dp) run%order = 2
-        end if
+        if (size(run%props) < 10) return
+        if (is_subloading(run%props) .and. run%props(10) > 0.0_dp) run%order = 2
     end subroutine read_adaptive
 
 end module run_settings

@@ -6,6 +6,7 @@ module simulation
     use checkpoint, only : snapshot, write_checkpoint
     use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
         statev_slip
+    use law_input, only : typical_coefficient
     use platform, only : interrupted, seconds
     use progress_bar, only : progress
     use recorder, only : csv_recorder
@@ -200,7 +201,8 @@ contains
         if (run%chain%scatter > 0.0_dp) system%load = scattered(run%chain)
         live%chain%slip_rate = run%chain%slip_rate
         allocate (live%chain%events(16))
-        live%finder%threshold = smallest_drop * run%area * run%props(4) * run%drive%largest_normal()
+        live%finder%threshold = smallest_drop * run%area &
+            * typical_coefficient(run%props) * run%drive%largest_normal()
         allocate (live%result%pieces(run%drive%listed), live%result%onsets(0))
         live%result%failure = ''
         call initial_state(system, run%chain%n_blocks, run%drive%normal_traction(0.0_dp, 1), &

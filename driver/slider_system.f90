@@ -40,6 +40,7 @@ module slider_system
         logical :: any_given = .false.
         real(dp) :: mu = 0.0_dp                !! friction coefficient [-]
         real(dp) :: r = 0.0_dp                 !! similarity ratio; the friction opposes +x [-]
+        logical :: has_r = .true.              !! the law has an R; otherwise it is 0 or 1 here
         real(dp) :: displacement = 0.0_dp      !! [L]
         real(dp) :: velocity = 0.0_dp          !! [L/T]
         logical :: spring_given = .false.      !! otherwise the block starts in equilibrium
@@ -104,7 +105,7 @@ contains
         state%x = values%displacement
         state%v = values%velocity
         state%statev(:, statev_mu) = values%mu
-        state%statev(:, statev_r) = values%r
+        if (values%has_r) state%statev(:, statev_r) = values%r
         state%friction = system%area * values%r * values%mu * state%normal
         if (allocated(system%load)) state%friction = state%friction * system%load
         state%statev(:, statev_u_et) = state%friction / (system%area * system%props(3))

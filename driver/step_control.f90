@@ -7,6 +7,7 @@ module step_control
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
+    use law_input, only : is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, set_accelerations, slider, &
@@ -32,7 +33,7 @@ module step_control
         ! of adaptive steps alone
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
-        real(dp) :: force_scale = 0.0_dp   !! static friction force [F]
+        real(dp) :: pressing = 0.0_dp      !! largest normal force [F]
         integer :: order = 1               !! of the method, with the friction law in it
         real(dp) :: stiffness = 0.0_dp     !! against displacements in the last step [F/L]
         real(dp) :: last_error = 1.0_dp    !! of the step before, part of the tolerated one
@@ -67,9 +68,9 @@ contains
         self%dt_min = run%dt_min
         self%dt_max = run%dt_max
         self%order = run%order
-        self%force_scale = max(run%area * run%props(4) * run%drive%largest_normal(), &
+        self%pressing = run%area * run%drive%largest_normal()
+        self%tolerated = run%rtol * max(typical_coefficient(run%props) * self%pressing, &
             tiny(1.0_dp) / epsilon(1.0_dp))
-        self%tolerated = run%rtol * self%force_scale
         self%middle = start
         self%halves = start
         self%whole = start
@@ -238,15 +239,14 @@ contains
             error = maxval(max(s%stiffness * abs(a%x - b%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(a%v - b%v), &
                 s%stiffness * abs(a%statev(:, statev_slip) - b%statev(:, statev_slip)), &
-                self%force_scale / s%props(4) * abs(a%statev(:, statev_mu) &
-                - b%statev(:, statev_mu))))
+                self%pressing * abs(a%statev(:, statev_mu) - b%statev(:, statev_mu))))
         end associate
         error = error / ((2**self%order - 1) * self%tolerated)
     end function error_of
 
     !> The better of what is known about the end of the step. Extrapolation would amplify an
-    !> oscillation that is faster than the step, and must not leave the range of the law's
-    !> variables.
+    !> oscillation that is faster than the step, which takes a mass, and must not leave the range of
+    !> the law's variables.
     subroutine extrapolate(self, dt, new)
         class(stepper), intent(inout) :: self
         real(dp), intent(in) :: dt          !! [T]
@@ -254,13 +254,18 @@ contains
         real(dp) :: weight
 
         new = self%halves
-        if (self%stiffness * dt**2 > self%system%mass) return
+        if (self%system%mass > 0.0_dp .and. self%stiffness * dt**2 > self%system%mass) return
         weight = 1.0_dp / (2**self%order - 1)
         new%statev = new%statev + weight * (new%statev - self%whole%statev)
         new%statev(:, statev_status) = self%halves%statev(:, statev_status)
         associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
-            mu = min(self%system%props(4), max(self%system%props(5), mu))
-            r = min(1.0_dp, max(0.0_dp, r))
+            if (is_subloading(self%system%props)) then
+                mu = min(self%system%props(4), max(self%system%props(5), mu))
+                r = min(1.0_dp, max(0.0_dp, r))
+            else
+                mu = max(0.0_dp, mu)
+                r = max(0.5_dp * self%halves%statev(:, statev_r), r)
+            end if
         end associate
         new%statev(:, statev_slip) = max(0.0_dp, new%statev(:, statev_slip))
         new%statev(:, statev_dissipation) = max(0.0_dp, new%statev(:, statev_dissipation))

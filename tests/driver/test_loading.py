@@ -2,7 +2,7 @@
 import math
 import unittest
 
-from test_program import Program, namelist
+from test_program import Program, law_namelist, namelist
 
 
 class Columns(Program):
@@ -86,6 +86,16 @@ class InitialState(Columns):
                                          ('time', 't_end'): '1'}))
         self.assertLess(max(abs(v - 1) for v in run['velocity']), 1e-8)
         self.assertLess(max(abs(m - mu) for m in run['mu']), 1e-8)
+
+    def test_a_block_in_steady_sliding_with_rate_and_state_friction_stays_in_it(self):
+        text = law_namelist('rate_and_state').replace('velocity = 1\n', 'velocity = 1e-3\n')
+        text += '&initial mu = 0.6, velocity = 1e-3 /'
+        for steps in ('dt = 1e-3', 'rtol = 1e-7'):
+            run = self.run_columns(text.replace('dt = 1e-3', steps))
+            self.assertAlmostEqual(run['friction_force'][0], 6.0, delta=1e-14)
+            self.assertLess(max(abs(v - 1e-3) for v in run['velocity']), 1e-9)
+            self.assertLess(max(abs(mu - 0.6) for mu in run['mu']), 1e-8)
+            self.assertLess(max(abs(theta - 10) for theta in run['R']), 1e-5)
 
     def test_energy_that_was_there_at_the_start_is_booked(self):
         result = self.run_text(namelist({('initial', 'spring_force'): '2', ('time', 'dt'): '1e-5'}),
@@ -260,6 +270,9 @@ class BadProgramme(Columns):
                                ('drive', 'normal_change'): "'jump'"}),
                      '&drive normal_amplitude = -1: must be >= 0', '&drive normal_frequency = 0: must be > 0',
                      "&drive normal_change = 'jump': must be one of 'step', 'ramp'")
+
+    def test_a_law_without_r_refuses_an_initial_r(self):
+        self.refused(law_namelist('rate_and_state') + '&initial r=0.5 /', '&initial r = 0.5: belongs to the law subloading')
 
     def test_initial_values_out_of_range(self):
         self.refused(namelist({('initial', 'mu'): '0.1', ('initial', 'r'): '1.1',

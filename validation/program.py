@@ -1,0 +1,38 @@
+"""The program `stickslip`: an input in, its table out."""
+import pathlib
+import subprocess
+import tempfile
+
+import numpy
+
+
+class Program:
+    def __init__(self, path):
+        self.path = path
+
+    def run(self, **groups):
+        """Runs an input given as {group: {key: value}}; the columns of its table and of its events."""
+        text = ''.join(f'&{group}\n' + ''.join(f'  {key} = {spelt(value)}\n' for key, value in keys.items()) + '/\n'
+                       for group, keys in groups.items() if keys)
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, 'case.nml').write_text(text, encoding='utf-8')
+            result = subprocess.run([self.path, 'run', 'case.nml', '--no-plot', '--quiet'], cwd=folder, text=True,
+                                    capture_output=True, check=False)
+            if result.returncode:
+                raise RuntimeError(f'{result.stderr}\n{text}')
+            return table(f'{folder}/case_out/case.csv'), table(f'{folder}/case_out/case_events.csv')
+
+
+def spelt(value):
+    """A value as namelists spell it."""
+    if isinstance(value, str):
+        return f"'{value}'"
+    if isinstance(value, (list, tuple)):
+        return ', '.join(map(spelt, value))
+    return repr(value) if isinstance(value, int) else repr(float(value))
+
+
+def table(name):
+    with open(name, encoding='utf-8') as file:
+        names, *rows = (line.strip().split(',') for line in file)
+    return dict(zip(names, numpy.array(rows, dtype=float).reshape(-1, len(names)).T))
