@@ -52,7 +52,7 @@ contains
             size(truth%onsets), ' events'
         call say('')
         call say(trim(line))
-        call say('method                                      steps    CPU s  times   event error s')
+        call say('method' // repeat(' ', 38) // 'steps    CPU s  times   event error s')
         call row('explicit 5(4), rtol 1e-6', explicit%steps, seconds, seconds, error)
         call solve_explicitly(run, 1.0e-7_dp, smallest_drop, explicit)
         call row('explicit 5(4), rtol 1e-7', explicit%steps, explicit%seconds, seconds, &

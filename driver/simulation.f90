@@ -9,7 +9,7 @@ module simulation
     use recorder, only : csv_recorder
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use slider_system, only : initial_state, place, slider, slider_state
+    use slider_system, only : copy_state, initial_state, place, slider, slider_state
     use slip_events, only : moment, slip_event, turning_point
     use time_integrator, only : step_report
     implicit none
@@ -68,7 +68,7 @@ contains
             if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
             if (live%rows_due == run%interval) live%rows_due = 0
             call watch(live%state, new)
-            live%state = new
+            call copy_state(new, live%state)
             call bar%show(live%state%time / run%t_end)
             if (present(checkpoint_name)) call keep()
         end do

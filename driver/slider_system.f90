@@ -12,7 +12,7 @@ module slider_system
     implicit none
     private
 
-    public :: apply_normal_traction, energy_balance, friction_forces, initial_state, &
+    public :: apply_normal_traction, copy_state, energy_balance, friction_forces, initial_state, &
         initial_values, place, slider, slider_state
 
     !> What stays.
@@ -100,6 +100,22 @@ contains
         if (system%mass > 0.0_dp) state%a = (state%spring - system%damping * state%v &
             - state%friction) / system%mass
     end subroutine place
+
+    !> `to = from` without new memory.
+    pure subroutine copy_state(from, to)
+        type(slider_state), intent(in) :: from
+        type(slider_state), intent(inout) :: to   !! allocated like `from`
+
+        to%time = from%time
+        to%drive = from%drive
+        to%normal = from%normal
+        to%x(:) = from%x
+        to%v(:) = from%v
+        to%a(:) = from%a
+        to%spring(:) = from%spring
+        to%friction(:) = from%friction
+        to%statev(:, :) = from%statev
+    end subroutine copy_state
 
     !> Energy that a state holds: of the motion, of the springs, of the contact [F L].
     pure function stored(self, state) result(energy)

@@ -9,7 +9,7 @@ module step_control
         statev_slip, statev_status
     use loading_programme, only : programme
     use run_settings, only : settings
-    use slider_system, only : apply_normal_traction, slider, slider_state
+    use slider_system, only : apply_normal_traction, copy_state, slider, slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
     implicit none
     private
@@ -252,7 +252,7 @@ contains
         type(slider_state), intent(inout) :: new
         real(dp) :: weight
 
-        new = self%halves
+        call copy_state(self%halves, new)
         if (self%stiffness * dt**2 > self%system%mass) return
         weight = 1.0_dp / (2**self%order - 1)
         new%statev = new%statev + weight * (new%statev - self%whole%statev)

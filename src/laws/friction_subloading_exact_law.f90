@@ -203,8 +203,8 @@ contains
         real(wp), parameter :: c(0:13) = [(1.0_wp / (gamma(k + 1.0_wp) * (k + 2)), k = 0, 13)]
         real(wp) :: even, odd
 
-        decay = exp(-x)
         if (x > x_series) then
+            decay = exp(-x)
             mean = (1.0_wp - decay) / x
             tilt = (mean - decay) / x
         else
@@ -216,7 +216,8 @@ contains
                 odd = odd * x**2 + c(k + 1)
             end do
             tilt = even - x * odd
-            mean = decay + x * tilt
+            mean = (1.0_wp + x * tilt) / (1.0_wp + x)
+            decay = 1.0_wp - x * mean
         end if
     end subroutine decay_means
 
