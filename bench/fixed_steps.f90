@@ -22,8 +22,8 @@ contains
         real(dp), intent(in), optional :: rtol, dt
         type(settings) :: run
 
-        run%props = [1.0_dp, 1.0e3_dp, 1.0e3_dp, 0.4_dp, 0.2_dp, 10.0_dp, 10.0_dp, 1.0e3_dp, &
-            0.4_dp, 0.0_dp]
+        allocate (run%props(10), source=[1.0_dp, 1.0e3_dp, 1.0e3_dp, 0.4_dp, 0.2_dp, 10.0_dp, &
+            10.0_dp, 1.0e3_dp, 0.4_dp, 0.0_dp])
         if (present(scheme)) run%props(10) = scheme
         run%mass = 1.0e-3_dp
         run%stiffness = 1.0_dp
