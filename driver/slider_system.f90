@@ -12,8 +12,8 @@ module slider_system
     implicit none
     private
 
-    public :: apply_normal_traction, energy_balance, friction_forces, initial_state, &
-        initial_values, place, set_accelerations, slider, slider_state, swap_states
+    public :: apply_normal_traction, copy_state, energy_balance, friction_forces, &
+        initial_state, initial_values, place, set_accelerations, slider, slider_state, swap_states
 
     !> What the first and the last block are coupled to.
     integer, parameter, public :: ends_free = 1       !! nothing
@@ -185,6 +185,22 @@ contains
         before = x(size(x))
         after = x(1)
     end subroutine beyond_ends
+
+    !> `to = from` without new memory.
+    pure subroutine copy_state(from, to)
+        type(slider_state), intent(in) :: from
+        type(slider_state), intent(inout) :: to   !! allocated like `from`
+
+        to%time = from%time
+        to%drive = from%drive
+        to%normal = from%normal
+        to%x(:) = from%x
+        to%v(:) = from%v
+        to%a(:) = from%a
+        to%spring(:) = from%spring
+        to%friction(:) = from%friction
+        to%statev(:, :) = from%statev
+    end subroutine copy_state
 
     !> Energy that a state holds: of the motion, of the springs, of the contact [F L].
     pure function stored(self, state) result(energy)

@@ -10,7 +10,7 @@ module step_control
     use law_input, only : is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
-    use slider_system, only : apply_normal_traction, set_accelerations, slider, &
+    use slider_system, only : apply_normal_traction, copy_state, set_accelerations, slider, &
         slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
     implicit none
@@ -253,7 +253,7 @@ contains
         type(slider_state), intent(inout) :: new
         real(dp) :: weight
 
-        new = self%halves
+        call copy_state(self%halves, new)
         if (self%system%mass > 0.0_dp .and. self%stiffness * dt**2 > self%system%mass) return
         weight = 1.0_dp / (2**self%order - 1)
         new%statev = new%statev + weight * (new%statev - self%whole%statev)

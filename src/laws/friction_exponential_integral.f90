@@ -67,17 +67,26 @@ contains
     pure function entire_part(y) result(ein)
         real(wp), intent(in) :: y   !! 0 to about 2
         real(wp) :: ein
-        integer, parameter :: n_terms = 24
-        real(wp) :: term
         integer :: k
+        !> Of -(-y)^(k+1): 1/((k + 1) (k + 1)!).
+        real(wp), parameter :: c(0:23) = [(1.0_wp / ((k + 1) * gamma(k + 2.0_wp)), k = 0, 23)]
+        real(wp), parameter :: y_few = 0.5_wp   !! the 15th term is below 1e-17 up to there
+        real(wp) :: even, odd
 
-        ein = y
-        term = y
-        do k = 2, n_terms
-            term = -term * y / k
-            ein = ein + term / k
-            if (abs(term) <= epsilon(ein) * ein) exit
+        ! two short chains of operations in place of a long one
+        even = 0.0_wp
+        odd = 0.0_wp
+        if (y > y_few) then
+            do k = 22, 14, -2
+                even = even * y**2 + c(k)
+                odd = odd * y**2 + c(k + 1)
+            end do
+        end if
+        do k = 12, 0, -2
+            even = even * y**2 + c(k)
+            odd = odd * y**2 + c(k + 1)
         end do
+        ein = y * (even - y * odd)
     end function entire_part
 
     !> exp(y) E1(y) by its continued fraction 1/(y+1 - 1/(y+3 - 4/(y+5 - ...))).

@@ -198,21 +198,26 @@ contains
         real(wp), intent(in) :: x                     !! >= 0
         real(wp), intent(out) :: decay, mean, tilt
         real(wp), parameter :: x_series = 0.5_wp
-        integer, parameter :: n_terms = 13   !! the next is below 1e-16 up to there
-        real(wp) :: sum_of_terms
         integer :: k
+        !> Of (-x)^k: 1/(k! (k + 2)); the next term is below 1e-16 up to `x_series`.
+        real(wp), parameter :: c(0:13) = [(1.0_wp / (gamma(k + 1.0_wp) * (k + 2)), k = 0, 13)]
+        real(wp) :: even, odd
 
-        decay = exp(-x)
         if (x > x_series) then
+            decay = exp(-x)
             mean = (1.0_wp - decay) / x
             tilt = (mean - decay) / x
         else
-            sum_of_terms = 0.0_wp
-            do k = n_terms, 0, -1   ! of (-x)^k/(k! (k + 2))
-                sum_of_terms = 1.0_wp / (k + 2) - x / (k + 1) * sum_of_terms
+            ! two short chains of operations in place of a long one
+            even = c(12)
+            odd = c(13)
+            do k = 10, 0, -2
+                even = even * x**2 + c(k)
+                odd = odd * x**2 + c(k + 1)
             end do
-            tilt = sum_of_terms
-            mean = decay + x * tilt
+            tilt = even - x * odd
+            mean = (1.0_wp + x * tilt) / (1.0_wp + x)
+            decay = 1.0_wp - x * mean
         end if
     end subroutine decay_means
 

@@ -1,0 +1,109 @@
+!> The reference problem of the driver's bars, and its runs with fixed steps.
+module fixed_steps
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use checkpoint, only : snapshot
+    use loading_programme, only : programme
+    use run_settings, only : settings
+    use simulation, only : start_run
+    use slider_system, only : slider_state
+    use slip_events, only : moment, slip_event, turning_point
+    use time_integrator, only : step_report
+    implicit none
+    private
+
+    public :: last_peak, problem
+
+contains
+
+    !> Steps are adaptive where `rtol` is given.
+    function problem(damping, t_end, scheme, rtol, dt) result(run)
+        real(dp), intent(in) :: damping, t_end
+        integer, intent(in), optional :: scheme
+        real(dp), intent(in), optional :: rtol, dt
+        type(settings) :: run
+
+        allocate (run%props(10), source=[1.0_dp, 1.0e3_dp, 1.0e3_dp, 0.4_dp, 0.2_dp, 10.0_dp, &
+            10.0_dp, 1.0e3_dp, 0.4_dp, 0.0_dp])
+        if (present(scheme)) run%props(10) = scheme
+        run%mass = 1.0e-3_dp
+        run%stiffness = 1.0_dp
+        run%damping = damping
+        run%area = 1.0_dp
+        run%drive = programme(start=[0.0_dp], travel=[0.0_dp], velocity=[1.0_dp], &
+            acceleration=[0.0_dp], normal=[10.0_dp], normal_rate=[0.0_dp])
+        run%t_end = t_end
+        run%dt = 1.0e-6_dp * t_end
+        run%checkpoint = 0.0_dp
+        run%adaptive = present(rtol)
+        if (present(dt)) run%dt = dt
+        if (present(rtol)) run%rtol = rtol
+        run%dt_max = t_end
+        run%dt_min = 1.0e-12_dp * t_end
+        run%order = 1 + nint(run%props(10))
+        run%beta = 0.25_dp
+        run%gamma = 0.5_dp
+        run%rho_infinity = -1.0_dp
+        run%tolerance = 1.0e-10_dp
+        run%max_iterations = 25
+        run%interval = huge(run%interval)
+        run%n_steps = nint(t_end / run%dt)
+    end function problem
+
+    !> Time and force of the peak before an event.
+    subroutine last_peak(run, event, onset, peak)
+        type(settings), intent(in) :: run
+        integer, intent(in) :: event
+        real(dp), intent(out) :: onset   !! [T]
+        real(dp), intent(out) :: peak    !! [F]
+        type(snapshot) :: live
+        type(slider_state) :: new
+        type(step_report) :: report
+        type(slip_event) :: seen_event
+        type(moment) :: before, now, turn
+        integer :: events
+        logical :: found, complete
+
+        call start_run(run, live)
+        new = live%state
+        events = 0
+        peak = 0.0_dp
+        before = seen(run, live%state)
+        do while (.not. live%steps%finished(live%state) .and. events < event)
+            call live%steps%take_step(live%state, new, report, complete)
+            if (report%status < 0) exit
+            now = seen(run, new)
+            call turning_point(before, now, turn, found)
+            if (found) call look(turn)
+            call look(now)
+            before = now
+            live%state = new
+        end do
+
+    contains
+
+        subroutine look(at)
+            type(moment), intent(in) :: at
+            logical :: over
+
+            if (events < event) peak = max(peak, at%force)
+            call live%finder%look(at, seen_event, over)
+            if (.not. over) return
+            events = events + 1
+            onset = seen_event%onset
+            if (events < event) peak = at%force
+        end subroutine look
+
+    end subroutine last_peak
+
+    pure function seen(run, state) result(now)
+        type(settings), intent(in) :: run
+        type(slider_state), intent(in) :: state
+        type(moment) :: now
+
+        now%time = state%time
+        now%force = state%spring(1)
+        now%velocity = state%v(1)
+        now%rate = run%stiffness * (run%drive%velocity(1) - state%v(1))
+    end function seen
+
+end module fixed_steps

@@ -1,0 +1,189 @@
+!> What a run of the driver costs and how exact it is, beside an explicit Runge-Kutta method of
+!> order 5(4): slider_bench DIRECTORY (docs/performance.md).
+program slider_bench
+    use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
+    use explicit_slider, only : explicit_run, solve_explicitly
+    use fixed_steps, only : last_peak, problem
+    use recorder, only : csv_recorder
+    use run_settings, only : settings
+    use simulation, only : outcome, simulate
+    implicit none
+
+    integer, parameter :: repetitions = 3
+    real(dp), parameter :: smallest_drop = 0.04_dp   !! the driver's: 1 % of static friction [F]
+    type(explicit_run) :: truth
+    character(len=4096) :: directory
+    character(len=120) :: line
+    integer :: text, places(2)
+
+    call get_command_argument(1, directory)
+    open (newunit=text, file=trim(directory) // '/slider.txt', status='replace', action='write')
+    places = [output_unit, text]
+    call compare(0.01_dp, 4.0_dp, 3.0e-4_dp)
+    call compare(0.0_dp, 3.0_dp, 7.0e-2_dp)
+    call show_orders()
+    close (text)
+
+contains
+
+    !> 100 cycles of the reference problem, by both.
+    subroutine compare(damping, faster, error_bar)
+        real(dp), intent(in) :: damping     !! [F T/L]
+        real(dp), intent(in) :: faster      !! the bar: times faster than the explicit method
+        real(dp), intent(in) :: error_bar   !! of event times [T]
+        real(dp), parameter :: t_end = 320.0_dp
+        real(dp), parameter :: rtols(4) = [1.0e-5_dp, 1.0e-6_dp, 1.0e-7_dp, 1.0e-8_dp]
+        type(settings) :: run
+        type(explicit_run) :: explicit
+        real(dp) :: seconds, error, best
+        character(len=40) :: name
+        integer :: i, scheme
+
+        run = problem(damping, t_end)
+        best = 0.0_dp
+        call solve_explicitly(run, 1.0e-11_dp, smallest_drop, truth)
+        seconds = huge(seconds)
+        do i = 1, repetitions
+            call solve_explicitly(run, 1.0e-6_dp, smallest_drop, explicit)
+            seconds = min(seconds, explicit%seconds)
+        end do
+        error = event_error(explicit%onsets)
+        write (line, '(a, f5.2, a, f6.1, a, i0, a)') 'damping ', damping, ', ', t_end, ' s, ', &
+            size(truth%onsets), ' events'
+        call say('')
+        call say(trim(line))
+        call say('method' // repeat(' ', 38) // 'steps    CPU s  times   event error s')
+        call row('explicit 5(4), rtol 1e-6', explicit%steps, seconds, seconds, error)
+        call solve_explicitly(run, 1.0e-7_dp, smallest_drop, explicit)
+        call row('explicit 5(4), rtol 1e-7', explicit%steps, explicit%seconds, seconds, &
+            event_error(explicit%onsets))
+        do scheme = 1, 0, -1
+            do i = 1, size(rtols) + scheme - 1
+                run = problem(damping, t_end, scheme=scheme, rtol=rtols(i))
+                write (name, '(2a, es7.1)') trim(scheme_name(scheme)), ', rtol ', rtols(i)
+                call measure(run, trim(name), seconds, min(error, error_bar), best)
+            end do
+        end do
+        do scheme = 1, 0, -1
+            run = problem(damping, t_end, scheme=scheme, dt=1.0e-3_dp)
+            call measure(run, trim(scheme_name(scheme)) // ', dt 1e-3', seconds, &
+                min(error, error_bar), best)
+        end do
+        write (line, '(a, f4.1, a, f6.2, 2x, a)') &
+            'bar: times faster than explicit at no larger an error   >= ', faster, '   ', best, &
+            verdict(best >= faster)
+        call say(trim(line))
+    end subroutine compare
+
+    !> A row of the table; `best` becomes the speed-up among the runs whose error is allowed.
+    subroutine measure(run, name, explicit_seconds, allowed, best)
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: name
+        real(dp), intent(in) :: explicit_seconds   !! [s]
+        real(dp), intent(in) :: allowed            !! error of event times [T]
+        real(dp), intent(inout) :: best
+        type(csv_recorder) :: nowhere   ! not started: drops what it is given
+        type(outcome) :: result
+        real(dp) :: begun, ended, seconds, error
+        integer :: i
+
+        seconds = huge(seconds)
+        do i = 1, repetitions
+            call cpu_time(begun)
+            call simulate(run, nowhere, .false., result)
+            call cpu_time(ended)
+            seconds = min(seconds, ended - begun)
+            if (seconds > 0.5_dp) exit
+        end do
+        error = event_error(result%onsets)
+        call row(name, result%steps, seconds, explicit_seconds, error)
+        if (len(result%failure) > 0) call say('  ' // result%failure)
+        if (error <= allowed) best = max(best, explicit_seconds / seconds)
+    end subroutine measure
+
+    !> Largest difference from the reference; huge if the numbers of events differ.
+    function event_error(onsets) result(error)
+        real(dp), intent(in) :: onsets(:)   !! [T]
+        real(dp) :: error                   !! [T]
+
+        error = huge(error)
+        if (size(onsets) == size(truth%onsets)) error = maxval(abs(onsets - truth%onsets))
+    end function event_error
+
+    !> Fixed steps: first event, before which nothing rings, and third event, with the ringing
+    !> resolved.
+    subroutine show_orders()
+        call say('')
+        call say('fixed steps, damping 0.01: errors and observed orders')
+        call say('scheme          event      dt s   event time s  order    peak force  order')
+        call show_order(scheme=1, event=1, t_end=5.0_dp, longest=2.0e-3_dp)
+        call show_order(scheme=0, event=1, t_end=5.0_dp, longest=2.0e-3_dp)
+        call show_order(scheme=1, event=3, t_end=12.0_dp, longest=2.0e-4_dp)
+        call show_order(scheme=0, event=3, t_end=12.0_dp, longest=2.0e-4_dp)
+    end subroutine show_orders
+
+    subroutine show_order(scheme, event, t_end, longest)
+        integer, intent(in) :: scheme, event
+        real(dp), intent(in) :: t_end      !! [T]
+        real(dp), intent(in) :: longest    !! step [T]
+        integer, parameter :: halvings = 3
+        real(dp) :: dt, onset, peak, error(2), before(2), order(2), first(2)
+        integer :: i
+
+        call solve_explicitly(problem(0.01_dp, t_end), 1.0e-12_dp, smallest_drop, truth)
+        before = 0.0_dp
+        do i = 0, halvings
+            dt = longest / 2**i
+            call last_peak(problem(0.01_dp, t_end, scheme=scheme, dt=dt), event, onset, peak)
+            error = abs([onset - truth%onsets(event), (peak - truth%peak_force) / truth%peak_force])
+            order = log(before / error) / log(2.0_dp)
+            write (line, '(a14, i7, es11.2, 2(es14.2, f7.2))') scheme_name(scheme), event, dt, &
+                error(1), order(1), error(2), order(2)
+            if (i == 0) first = error
+            if (i == 0) line(47:53) = ''
+            if (i == 0) line(68:) = ''
+            call say(trim(line))
+            before = error
+        end do
+        if (scheme == 0) return
+        order = log(first / error) / log(2.0_dp) / halvings
+        write (line, '(a, 2f7.2, 2x, a)') 'bar: orders over this range >= 1.9', order, &
+            verdict(all(order >= 1.9_dp))
+        call say(trim(line))
+    end subroutine show_order
+
+    pure function scheme_name(scheme) result(name)
+        integer, intent(in) :: scheme
+        character(len=14) :: name
+
+        name = merge('exact_rate    ', 'backward_euler', scheme == 1)
+    end function scheme_name
+
+    subroutine row(name, steps, seconds, explicit_seconds, error)
+        character(len=*), intent(in) :: name
+        integer, intent(in) :: steps
+        real(dp), intent(in) :: seconds, explicit_seconds, error
+
+        write (line, '(a38, i11, f9.3, f7.2, es16.1)') name // repeat(' ', 38), steps, seconds, &
+            explicit_seconds / seconds, error
+        call say(trim(line))
+    end subroutine row
+
+    pure function verdict(met) result(word)
+        logical, intent(in) :: met
+        character(len=6) :: word
+
+        word = merge('met   ', 'MISSED', met)
+    end function verdict
+
+    subroutine say(what)
+        character(len=*), intent(in) :: what
+        integer :: i
+
+        do i = 1, 2
+            write (places(i), '(a)') what
+            flush (places(i))
+        end do
+    end subroutine say
+
+end program slider_bench
