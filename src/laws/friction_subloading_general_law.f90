@@ -67,16 +67,67 @@ contains
         bound = pressure * (r * fall - mu_to * rate)
     end function weakening
 
-    !> The parent's way is for the logarithm alone; the search of the return mapping does.
+    !> Newton's method in the slip, bracketed, where there can be one equilibrium only.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
         class(subloading_general_law), intent(in) :: self
         real(wp), intent(in) :: trial, stiffness, pressure, dt
         type(law_state), intent(in) :: old
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
+        integer, parameter :: max_iterations = 30
+        real(wp) :: mu, fall, s, low, high, slope, step, small
+        integer :: iteration
 
         solved = .false.
+        call friction_coefficient(self, 0.0_wp, dt, old, mu, fall)
+        if (stiffness <= pressure * fall) return   ! several equilibria possible
+        small = 0.1_wp * sqrt(epsilon(small))      ! the next error is about the square of a step
+        low = 0.0_wp
+        high = trial / stiffness
+        s = start(self%m, old%r, mu * pressure, trial, stiffness)
+        do iteration = 1, max_iterations
+            answer%slip = s
+            call slide(self, s, pressure, dt, old, answer%state, answer%resistance, &
+                answer%d_slip, answer%d_pressure)
+            if (solved) return
+            slope = stiffness + answer%d_slip
+            step = (trial - stiffness * s - answer%resistance) / slope
+            if (step > 0.0_wp) then
+                low = s
+            else
+                high = s
+            end if
+            solved = abs(step) <= max(small * s, epsilon(step) * trial / slope)
+            s = s + step
+            if (.not. (solved .or. (s > low .and. s < high))) s = 0.5_wp * (low + high)
+            s = max(s, 0.0_wp)
+        end do
+        solved = .false.
     end subroutine solve
+
+    !> The slip for constant mu by the reciprocal, where R solves a quadratic equation; zero if it
+    !> drowns in round-off.
+    pure function start(m, r_n, full, trial, stiffness) result(s)
+        real(wp), intent(in) :: m           !! of the law [1/L]
+        real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
+        real(wp), intent(in) :: full        !! traction of the normal sliding surface [F/L^2]
+        real(wp), intent(in) :: trial       !! tangential traction without slip [F/L^2]
+        real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
+        real(wp) :: s                       !! >= 0 [L]
+        real(wp) :: unit, a, b, c, root, r
+
+        unit = stiffness + m * (trial + full)   ! so that no square overflows
+        a = (stiffness - m * full) / unit
+        b = (m * (trial + full) - stiffness * r_n) / unit
+        c = m * trial / unit
+        root = sqrt(max(b**2 + 4.0_wp * a * c, 0.0_wp))
+        if (b > 0.0_wp) then
+            r = 2.0_wp * c / (b + root)
+        else
+            r = 0.5_wp * (root - b) / a
+        end if
+        s = max((trial - full * r) / stiffness, 0.0_wp)
+    end function start
 
     !> mu after a slip, and -d(mu)/ds, which is never negative and shrinks with the slip.
     pure subroutine friction_coefficient(self, slip, dt, old, mu, fall)
