@@ -46,6 +46,7 @@ contains
         run%tolerance = 1.0e-10_dp
         run%max_iterations = 25
         run%interval = huge(run%interval)
+        run%fields = 0
         run%n_steps = nint(t_end / run%dt)
     end function problem
 

@@ -22,6 +22,7 @@ program slider_bench
     call compare(0.01_dp, 4.0_dp, 3.0e-4_dp)
     call compare(0.0_dp, 3.0_dp, 7.0e-2_dp)
     call show_orders()
+    call show_chains()
     close (text)
 
 contains
@@ -74,6 +75,92 @@ contains
             verdict(best >= faster)
         call say(trim(line))
     end subroutine compare
+
+    !> CPU time of a block and step in chains of growing length: the difference of a long and a
+    !> short run, so that the start does not count.
+    subroutine show_chains()
+        integer, parameter :: few = 10, many = 40
+        integer :: n, i
+        real(dp) :: cost, first
+
+        call say('')
+        call say('chain of blocks   Newton iterations a step   CPU ns a block and step')
+        first = 0.0_dp
+        do i = 3, 6
+            n = 10**i
+            cost = cost_of_chain(n, few, many)
+            if (i == 3) first = cost
+        end do
+        write (line, '(a, f6.2, 2x, a)') &
+            'bar: 1e6 blocks over 1e3 blocks, cost of a block and step   <= 1.2   ', cost / first, &
+            verdict(cost <= 1.2_dp * first)
+        call say(trim(line))
+        write (line, '(a, f6.0, 2x, a)') &
+            'bar: 1e6 blocks, ns a block and step                        <= 250   ', cost, &
+            verdict(cost <= 250.0_dp)
+        call say(trim(line))
+    end subroutine show_chains
+
+    !> Median of several runs; short chains, whose runs are short, are run more often.
+    function cost_of_chain(n, few, many) result(cost)
+        integer, intent(in) :: n           !! blocks
+        integer, intent(in) :: few, many   !! steps
+        real(dp) :: cost                   !! [ns]
+        real(dp) :: seconds(2), costs(5), iterations
+        integer :: k, j, again, repeats
+
+        repeats = max(1, 100000 / n)
+        do k = 1, size(costs)
+            seconds = 0.0_dp
+            do again = 1, repeats
+                do j = 1, 2
+                    call time_chain(n, merge(few, many, j == 1), seconds(j), iterations)
+                end do
+            end do
+            costs(k) = 1.0e9_dp * (seconds(2) - seconds(1)) / (real(n, dp) * (many - few) * repeats)
+        end do
+        cost = middle(costs)
+        write (line, '(i15, f28.2, f26.0)') n, iterations, cost
+        call say(trim(line))
+    end function cost_of_chain
+
+    subroutine time_chain(n, steps, seconds, iterations)
+        integer, intent(in) :: n, steps
+        real(dp), intent(inout) :: seconds      !! CPU time is added [s]
+        real(dp), intent(out) :: iterations     !! of Newton's method a step
+        real(dp), parameter :: dt = 1.0e-3_dp
+        type(settings) :: run
+        type(csv_recorder) :: nowhere
+        type(outcome) :: result
+        real(dp) :: begun, ended
+
+        run = problem(0.01_dp, steps * dt, dt=dt)
+        run%chain%n_blocks = n
+        run%chain%coupling = 10.0_dp
+        run%chain%scatter = 0.1_dp
+        run%chain%slip_rate = 1.0_dp
+        run%initial%any_given = .true.
+        run%initial%mu = 0.4_dp
+        run%initial%r = 0.9_dp
+        call cpu_time(begun)
+        call simulate(run, nowhere, .false., result)
+        call cpu_time(ended)
+        seconds = seconds + (ended - begun)
+        iterations = real(result%iterations, dp) / max(1, steps)
+    end subroutine time_chain
+
+    pure function middle(values) result(median)
+        real(dp), intent(in) :: values(:)   !! an odd number of them
+        real(dp) :: median
+        integer :: i
+
+        median = 0.0_dp
+        do i = 1, size(values)
+            if (count(values < values(i)) > size(values) / 2) cycle
+            if (count(values > values(i)) > size(values) / 2) cycle
+            median = values(i)
+        end do
+    end function middle
 
     !> A row of the table; `best` becomes the speed-up among the runs whose error is allowed.
     subroutine measure(run, name, explicit_seconds, allowed, best)
