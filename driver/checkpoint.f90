@@ -52,7 +52,7 @@ contains
                 s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, r%snap_backs, &
                 r%peak_velocity, r%energy, r%pieces, r%onsets, r%chain_events, r%largest_moment, &
                 now%chain%events(:now%chain%count), now%rows_due, now%fields_due, records%rows, &
-                records%series%bytes, records%events%bytes, records%fields%bytes, last_words
+                records%series%bytes, records%events%bytes, records%fields_place(), last_words
         end associate
         inquire (unit=unit, pos=expected)
         close (unit)

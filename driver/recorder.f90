@@ -3,6 +3,7 @@
 module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_events, only : chain_event
+    use field_file, only : netcdf_fields
     use friction_mod, only : statev_mu, statev_r, statev_slip
     use slider_system, only : slider_state
     use slip_events, only : slip_event
@@ -20,34 +21,38 @@ module recorder
         'onset,duration,first_block,blocks,slip,moment,peak_velocity'
     character(len=*), parameter :: fields_header = 'time,block,slip_rate,slip,mu'
     integer, parameter :: rows_between_flushes = 200
+    integer, parameter, public :: most_in_csv = 1000   !! blocks whose fields fit in a CSV file
 
     type :: csv_recorder
         type(output_file) :: series, events, fields
+        type(netcdf_fields) :: netcdf   !! in place of `fields` for a long chain
         integer :: rows = 0
     contains
-        procedure :: start, go_on, flush_all, write_state, write_event, write_chain_event, &
-            write_fields, failed, finish
+        procedure :: start, go_on, flush_all, fields_place, write_state, write_event, &
+            write_chain_event, write_fields, failed, finish
     end type csv_recorder
 
 contains
 
     !> The catalogue of a chain has other columns than that of one block. Without a name for fields
     !> none are written.
-    subroutine start(self, series_name, events_name, chain, fields_name)
+    subroutine start(self, series_name, events_name, n_blocks, fields_name)
         class(csv_recorder), intent(inout) :: self
         character(len=*), intent(in) :: series_name, events_name
-        logical, intent(in) :: chain
+        integer, intent(in) :: n_blocks               !! more than one: a chain
         character(len=*), intent(in) :: fields_name   !! may be empty
 
         call self%series%create(series_name)
         call self%events%create(events_name)
         call self%series%write_line(series_header)
-        if (chain) then
+        if (n_blocks > 1) then
             call self%events%write_line(chain_events_header)
         else
             call self%events%write_line(events_header)
         end if
-        if (len(fields_name) > 0) then
+        if (is_netcdf(fields_name)) then
+            call self%netcdf%create(fields_name, n_blocks)
+        else if (len(fields_name) > 0) then
             call self%fields%create(fields_name)
             call self%fields%write_line(fields_header)
         end if
@@ -59,13 +64,34 @@ contains
         class(csv_recorder), intent(inout) :: self
         character(len=*), intent(in) :: series_name, events_name, fields_name
         integer, intent(in) :: rows              !! of the time series
-        integer(int64), intent(in) :: bytes(3)   !! of the time series, the events, the fields
+        integer(int64), intent(in) :: bytes(3)   !! of the time series, the events, the fields (rows
+                                                 !! in a NetCDF file)
 
         call self%series%go_on(series_name, bytes(1))
         call self%events%go_on(events_name, bytes(2))
-        if (len(fields_name) > 0) call self%fields%go_on(fields_name, bytes(3))
+        if (is_netcdf(fields_name)) then
+            call self%netcdf%go_on(fields_name, int(bytes(3)))
+        else if (len(fields_name) > 0) then
+            call self%fields%go_on(fields_name, bytes(3))
+        end if
         self%rows = rows
     end subroutine go_on
+
+    !> How much of the fields there is: bytes, or rows of a NetCDF file.
+    pure function fields_place(self) result(place)
+        class(csv_recorder), intent(in) :: self
+        integer(int64) :: place
+
+        place = self%fields%bytes + self%netcdf%rows   ! one of them is 0
+    end function fields_place
+
+    pure function is_netcdf(name)
+        character(len=*), intent(in) :: name
+        logical :: is_netcdf
+
+        is_netcdf = index(name, '.nc', back=.true.) > 0 &
+            .and. index(name, '.nc', back=.true.) == len(name) - 2
+    end function is_netcdf
 
     subroutine flush_all(self)
         class(csv_recorder), intent(inout) :: self
@@ -80,7 +106,8 @@ contains
         class(csv_recorder), intent(in) :: self
         logical :: lost
 
-        lost = self%series%failed .or. self%events%failed .or. self%fields%failed
+        lost = self%series%failed .or. self%events%failed .or. self%fields%failed &
+            .or. self%netcdf%failed
     end function failed
 
     !> One row of the time series. Of several blocks it shows the means.
@@ -117,7 +144,8 @@ contains
         call self%events%flush_lines()
     end subroutine write_chain_event
 
-    !> The blocks after the step from `old` to `new`, a line each, and an empty line for gnuplot.
+    !> The blocks after the step from `old` to `new`: a row of the NetCDF file, or in CSV a line
+    !> each and an empty line for gnuplot.
     subroutine write_fields(self, old, new)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
@@ -126,6 +154,11 @@ contains
         integer :: i
 
         dt = max(new%time - old%time, tiny(dt))
+        if (size(new%x) > most_in_csv) then
+            call self%netcdf%write_row(new%time, (new%statev(:, statev_slip) - old%statev(:, &
+                statev_slip)) / dt, new%statev(:, statev_slip), new%statev(:, statev_mu))
+            return
+        end if
         do i = 1, size(new%x)
             write (line, '(es13.6e2, ",", i0, 3(",", es13.6e2))') new%time, i, &
                 (new%statev(i, statev_slip) - old%statev(i, statev_slip)) / dt, &
@@ -173,6 +206,7 @@ contains
         call self%series%finish()
         call self%events%finish()
         call self%fields%finish()
+        call self%netcdf%finish()
     end subroutine finish
 
 end module recorder

@@ -2,9 +2,11 @@
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_settings, only : chain, read_chain
+    use field_file, only : netcdf_available
     use law_input, only : is_subloading, kinetic_coefficient, read_friction, typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
+    use recorder, only : most_in_csv
     use slider_system, only : initial_values
     implicit none
     private
@@ -35,7 +37,6 @@ module run_settings
         integer :: n_steps                  !! follows from t_end and dt
     end type settings
 
-    integer, parameter :: most_in_csv = 1000   !! blocks whose fields are written
 
 contains
 
@@ -99,8 +100,10 @@ contains
         call file%get_integer('output', 'fields', run%fields, at_least(0.0_dp), default=0)
         if (run%fields > 0 .and. run%chain%n_blocks == 1) call file%reject('output', 'fields', &
             'needs a chain of two or more blocks')
-        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv) call file%reject('output', &
-            'fields', 'needs a chain of 1000 blocks or fewer')
+        if (netcdf_available .or. run%fields == 0) return
+        if (run%chain%n_blocks > most_in_csv) call file%reject('output', 'fields', &
+            'of more than 1000 blocks needs NetCDF, which this program was built without ' &
+            // '(Debian: libnetcdff-dev)')
     end subroutine read_fields
 
     !> How the block starts.

@@ -7,7 +7,7 @@ module study
     use namelist_input, only : namelist_file, read_namelist_file
     use picture, only : draw_picture
     use platform, only : make_directory, remove_file, watch_for_interrupts
-    use recorder, only : csv_recorder
+    use recorder, only : csv_recorder, most_in_csv
     use run_settings, only : read_settings, settings
     use simulation, only : outcome, simulate, start_run
     use summary, only : print_event_times, print_summary
@@ -79,6 +79,7 @@ contains
         base = wanted%output // '/' // wanted%stem
         fields = ''
         if (run%fields > 0) fields = base // '_fields.csv'
+        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv) fields = base // '_fields.nc'
         if (.not. make_directory(wanted%output)) then
             write (error_unit, '(3a)') "stickslip: cannot write to the directory '", &
                 wanted%output, "'"
@@ -93,7 +94,7 @@ contains
             end if
             call records%go_on(base // '.csv', base // '_events.csv', fields, rows, bytes)
         else
-            call records%start(base // '.csv', base // '_events.csv', run%chain%n_blocks > 1, &
+            call records%start(base // '.csv', base // '_events.csv', run%chain%n_blocks, &
                 fields)
         end if
         if (records%failed()) then
@@ -124,8 +125,8 @@ contains
         call draw_picture(wanted%output, wanted%stem, problem)
         if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(wanted%output, &
             wanted%stem, problem)
-        if (len(problem) == 0 .and. run%fields > 0) call draw_fields(wanted%output, wanted%stem, &
-            run%chain%slip_rate, problem)
+        if (len(problem) == 0 .and. index(fields, '.csv') > 0) call draw_fields(wanted%output, &
+            wanted%stem, run%chain%slip_rate, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_input
 
@@ -144,7 +145,7 @@ contains
         else
             tighter%dt = 0.5_dp * run%dt
         end if
-        call nowhere%start('/dev/null', '/dev/null', .false., '')
+        call nowhere%start('/dev/null', '/dev/null', 1, '')
         tighter%fields = 0
         call simulate(tighter, nowhere, .false., reference)
         call nowhere%finish()
