@@ -61,7 +61,10 @@ contains
         self%dt = run%dt
         self%t_end = run%t_end
         self%adaptive = run%adaptive
-        self%method = newmark(run%beta, run%gamma, run%tolerance, run%max_iterations)
+        self%method%beta = run%beta
+        self%method%gamma = run%gamma
+        self%method%tolerance = run%tolerance
+        self%method%max_iterations = run%max_iterations
         if (run%rho_infinity >= 0.0_dp) self%method = generalised_alpha(run%rho_infinity, &
             run%tolerance, run%max_iterations)
         if (.not. run%adaptive) return

@@ -48,7 +48,8 @@ contains
         integer, intent(in) :: max_iterations
         type(newmark) :: method
 
-        method = newmark(tolerance=tolerance, max_iterations=max_iterations)
+        method%tolerance = tolerance
+        method%max_iterations = max_iterations
         if (rho >= 1.0_dp) return
         method%alpha_m = (2.0_dp * rho - 1.0_dp) / (rho + 1.0_dp)
         method%alpha_f = rho / (rho + 1.0_dp)
