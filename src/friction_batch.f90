@@ -26,7 +26,7 @@ submodule(friction_mod) friction_batch
         !> See module friction_batch_kernel.
         subroutine batch_kernel(stride, du, dtime, constants, statev, traction, tangent, left, &
             n_left) bind(C, name='stickslip_batch_kernel')
-            import :: c_double, c_int, c_int64_t
+            import :: c_double, c_int, c_int64_t, lanes
             implicit none
             integer(c_int64_t), value, intent(in) :: stride
             real(c_double), intent(in) :: du(stride, *)
@@ -34,7 +34,7 @@ submodule(friction_mod) friction_batch
             real(c_double), intent(in) :: constants(8)
             real(c_double), intent(inout) :: statev(stride, *), traction(stride, *)
             real(c_double), intent(inout) :: tangent(stride, 3, *)
-            integer(c_int), intent(out) :: left(128), n_left
+            integer(c_int), intent(out) :: left(lanes), n_left
         end subroutine batch_kernel
     end interface
 
@@ -151,25 +151,29 @@ contains
             if (n_left == 0) then
                 status(first:last) = friction_ok
             else
-                call update_copies(this, first, last, du, props, statev, traction, tangent, status)
+                call update_copies(this, first, last, du, props, left, statev, traction, tangent, &
+                    status)
             end if
         else if (last >= first) then
-            call update_copies(this, first, last, du, props, statev, traction, tangent, status)
+            left = 0
+            call update_copies(this, first, last, du, props, left, statev, traction, tangent, &
+                status)
         end if
     end subroutine update_range
 
     !> The same through a copy, filled up to a block of three components, without the points that
     !> the kernel leaves: those go one by one.
-    subroutine update_copies(this, first, last, du, props, statev, traction, tangent, status)
+    subroutine update_copies(this, first, last, du, props, left, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
         real(wp), intent(in) :: du(this%n, this%ndir), props(this%nprops)
+        integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
         real(wp), intent(inout) :: statev(this%n, this%nstatv), traction(this%n, this%ndir)
         real(wp), intent(inout) :: tangent(this%n, this%ndir, this%ndir)
         integer, intent(inout) :: status(this%n)
         real(wp) :: du_(lanes, 3), statev_(lanes, statev_size), traction_(lanes, 3), &
             tangent_(lanes, 3, 3)
-        integer(c_int) :: left(lanes), more(lanes), n_left
+        integer(c_int) :: more(lanes), n_left
         integer(int64) :: i
         integer :: count, j, k
 
@@ -178,7 +182,6 @@ contains
         statev_ = 0.0_wp
         du_(:count, :this%ndir) = du(first:last, :)
         statev_(:count, :) = statev(first:last, :statev_size)
-        left = 0
         ! In a plane the routine for one point neither uses nor keeps this component, but checks it.
         if (this%ndir == 2) then
             do j = 1, lanes
