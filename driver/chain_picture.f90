@@ -2,7 +2,7 @@
 !> space and time.
 module chain_picture
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use picture, only : escaped, quoted, run_gnuplot
+    use picture, only : escaped, finish_picture, quoted
     use text_file, only : output_file
     implicit none
     private
@@ -29,7 +29,7 @@ contains
         call script%write_line('set ylabel "events of that moment or more"')
         call script%write_line('plot $larger using (-$1):2 with points pointtype 7 pointsize 0.7 ' &
             // 'linecolor "#9400d3" notitle')
-        call finish(script, directory, stem // '_events', problem)
+        call finish_picture(script, directory, stem // '_events', problem)
     end subroutine draw_catalogue
 
     !> DIRECTORY/STEM_fields.png, from the fields.
@@ -60,7 +60,7 @@ contains
         call script%write_line('above(rate) = rate > least ? rate : least')
         call script%write_line('splot file using "time":"block":(above(column("slip_rate"))) ' &
             // 'with pm3d notitle')
-        call finish(script, directory, stem // '_fields', problem)
+        call finish_picture(script, directory, stem // '_fields', problem)
     end subroutine draw_fields
 
     !> Starts the script NAME.gp for NAME.csv.
@@ -76,19 +76,5 @@ contains
         call script%write_line('set title ' // quoted(escaped(title)))
         call script%write_line('set grid')
     end subroutine begin
-
-    subroutine finish(script, directory, name, problem)
-        type(output_file), intent(inout) :: script
-        character(len=*), intent(in) :: directory, name
-        character(len=:), allocatable, intent(out) :: problem
-
-        call script%finish()
-        problem = ''
-        if (script%failed) then
-            problem = 'cannot write ' // directory // '/' // name // '.gp'
-        else
-            call run_gnuplot(directory, name, problem)
-        end if
-    end subroutine finish
 
 end module chain_picture

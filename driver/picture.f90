@@ -5,7 +5,7 @@ module picture
     implicit none
     private
 
-    public :: draw_picture, escaped, quoted, run_gnuplot
+    public :: draw_picture, escaped, finish_picture, put_line_styles, quoted
 
 contains
 
@@ -15,9 +15,26 @@ contains
         character(len=*), intent(in) :: directory, stem
         character(len=:), allocatable, intent(out) :: problem
 
-        call write_script(directory // '/' // stem // '.gp', stem, problem)
-        if (len(problem) == 0) call run_gnuplot(directory, stem, problem)
+        type(output_file) :: script
+
+        call script%create(directory // '/' // stem // '.gp')
+        call write_script(script, stem)
+        call finish_picture(script, directory, stem, problem)
     end subroutine draw_picture
+
+    !> Ends the script DIRECTORY/STEM.gp and draws its picture. `problem` says what went wrong.
+    subroutine finish_picture(script, directory, stem, problem)
+        type(output_file), intent(inout) :: script
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+
+        call script%finish()
+        if (script%failed) then
+            problem = 'cannot write ' // directory // '/' // stem // '.gp'
+        else
+            call run_gnuplot(directory, stem, problem)
+        end if
+    end subroutine finish_picture
 
     !> Draws DIRECTORY/STEM.png with the script DIRECTORY/STEM.gp. `problem` says what went wrong.
     subroutine run_gnuplot(directory, stem, problem)
@@ -33,21 +50,26 @@ contains
         end if
     end subroutine run_gnuplot
 
-    subroutine write_script(name, stem, problem)
-        character(len=*), intent(in) :: name, stem
-        character(len=:), allocatable, intent(out) :: problem
-        type(output_file) :: script
+    !> Lines of force, of friction, of slip, and what they are seen against.
+    subroutine put_line_styles(script)
+        type(output_file), intent(inout) :: script
 
-        call script%create(name)
+        call script%write_line('set style line 1 linewidth 1.5 linecolor "#9400d3"')
+        call script%write_line('set style line 2 linewidth 1.5 linecolor "#0072b2"')
+        call script%write_line('set style line 3 linewidth 1.5 linecolor "#d55e00"')
+        call script%write_line('set style line 9 linewidth 1 linecolor "gray60"')
+    end subroutine put_line_styles
+
+    subroutine write_script(script, stem)
+        type(output_file), intent(inout) :: script
+        character(len=*), intent(in) :: stem
+
         call put('# Picture of a stickslip run: gnuplot ' // stem // '.gp')
         call put('file = ' // quoted(stem // '.csv'))
         call put('set terminal pngcairo size 1200,1000 font "Sans,12"')
         call put('set output ' // quoted(stem // '.png'))
         call put('set datafile separator ","')
-        call put('set style line 1 linewidth 1.5 linecolor "#9400d3"')
-        call put('set style line 2 linewidth 1.5 linecolor "#0072b2"')
-        call put('set style line 3 linewidth 1.5 linecolor "#d55e00"')
-        call put('set style line 9 linewidth 1 linecolor "gray60"')
+        call put_line_styles(script)
         call put('set multiplot layout 3,1 title ' // quoted(escaped(stem)))
         call put('set grid')
         call put('set lmargin 12')
@@ -63,9 +85,6 @@ contains
         call put('plot file using "time":"drive" with lines ls 9 title "drive", \')
         call put('     file using "time":"slip" with lines ls 3 title "slip"')
         call put('unset multiplot')
-        call script%finish()
-        problem = ''
-        if (script%failed) problem = 'cannot write ' // name
 
     contains
 

@@ -1,7 +1,7 @@
 !> The picture of a point's path: the hysteresis loop, and friction over slip. Drawn by gnuplot from
 !> the CSV file; its script stays beside it.
 module point_picture
-    use picture, only : escaped, quoted, run_gnuplot
+    use picture, only : escaped, finish_picture, put_line_styles, quoted
     use text_file, only : output_file
     implicit none
     private
@@ -25,10 +25,7 @@ contains
         call put('set terminal pngcairo size 1200,600 font "Sans,12"')
         call put('set output ' // quoted(stem // '.png'))
         call put('set datafile separator ","')
-        call put('set style line 1 linewidth 1.5 linecolor "#9400d3"')
-        call put('set style line 2 linewidth 1.5 linecolor "#0072b2"')
-        call put('set style line 3 linewidth 1.5 linecolor "#d55e00"')
-        call put('set style line 9 linewidth 1 linecolor "gray60"')
+        call put_line_styles(script)
         call put('set multiplot layout 1,2 title ' // quoted(escaped(stem)))
         call put('set grid')
         call put('set xtics font ",9"')
@@ -49,10 +46,7 @@ contains
         call put('         with lines ls 9 title "|t_t| / |t_n|", \')
         call put('     file using "slip":"mu" with lines ls 2 title "mu"')
         call put('unset multiplot')
-        call script%finish()
-        problem = ''
-        if (script%failed) problem = 'cannot write ' // directory // '/' // stem // '.gp'
-        if (.not. script%failed) call run_gnuplot(directory, stem, problem)
+        call finish_picture(script, directory, stem, problem)
 
     contains
 

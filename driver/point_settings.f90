@@ -2,9 +2,9 @@
 module point_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use csv_table, only : csv => table, name_length, read_table
+    use law_input, only : read_friction
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
-    use run_settings, only : read_friction
     implicit none
     private
 

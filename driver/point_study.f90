@@ -5,12 +5,12 @@ module point_study
     use friction_mod, only : friction_message, statev_dissipation, statev_slip
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file, read_namelist_file
-    use platform, only : make_directory
     use point_picture, only : draw_point_picture
     use point_recorder, only : point_csv
     use point_settings, only : group, point_run, read_point_settings
     use progress_bar, only : progress
-    use study, only : exit_bad_input, exit_done, exit_failed
+    use study, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, is_readable, &
+        tell_failure
     implicit none
     private
 
@@ -52,14 +52,9 @@ contains
         type(point_run), intent(out) :: run
         integer, intent(out) :: exit_status
         type(namelist_file) :: file
-        character(len=:), allocatable :: problem
 
         exit_status = exit_bad_input
-        call read_namelist_file(wanted%input, file, problem)
-        if (len(problem) > 0) then
-            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': ', problem
-            return
-        end if
+        if (.not. is_readable(wanted%input, file)) return
         call read_point_settings(file, run)
         if (size(file%faults) > 0) then
             write (error_unit, '(a)', advance='no') file%describe_faults()
@@ -93,11 +88,7 @@ contains
 
         exit_status = exit_bad_input
         base = wanted%output // '/' // wanted%stem
-        if (.not. make_directory(wanted%output)) then
-            write (error_unit, '(3a)') "stickslip: cannot write to the directory '", &
-                wanted%output, "'"
-            return
-        end if
+        if (.not. directory_is_ready(wanted%output)) return
         call records%start(base // '.csv', run%loading%ndir, run%tangent)
         if (records%file%failed) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
@@ -111,9 +102,7 @@ contains
         if (.not. wanted%quiet) call print_summary(point, result)
         exit_status = exit_done
         if (len(result%failure) > 0) then
-            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': the run failed ', &
-                result%failure
-            write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
+            call tell_failure(wanted%input, result%failure, base)
             exit_status = exit_failed
         end if
         if (.not. wanted%plot) return

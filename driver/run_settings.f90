@@ -11,7 +11,7 @@ module run_settings
     implicit none
     private
 
-    public :: read_friction, read_settings, settings
+    public :: read_settings, settings
 
     type :: settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
@@ -36,7 +36,6 @@ module run_settings
         integer :: fields                   !! steps between two pictures of the chain; 0: none
         integer :: n_steps                  !! follows from t_end and dt
     end type settings
-
 
 contains
 
@@ -111,6 +110,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
         character(len=*), parameter :: group = 'initial'
+
         run%initial%any_given = file%has_group(group)
         if (.not. run%initial%any_given) return
         call read_initial_friction(file, run)

@@ -209,7 +209,8 @@ contains
             live%state, status)
         if (status < 0) live%result%failure = 'at the start: ' // friction_message(status)
         call place(system, run%initial, live%state)
-        live%result%energy%at_start = system%stored(live%state)
+        call system%take_stock(live%state, live%result%energy)
+        live%result%energy%at_start = live%result%energy%held()
         call live%steps%begin(run, system, live%state)
     end subroutine start_run
 

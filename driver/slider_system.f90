@@ -32,7 +32,7 @@ module slider_system
         procedure :: penetration_step
         procedure :: add_coupling, coupling_energy
         procedure :: account
-        procedure :: stored
+        procedure :: take_stock
     end type slider
 
     !> How a block starts, if not at rest on a virgin contact with a slack spring.
@@ -65,7 +65,7 @@ module slider_system
         real(dp) :: kinetic = 0.0_dp, spring = 0.0_dp, contact = 0.0_dp   !! held now
         real(dp) :: damped = 0.0_dp, dissipated = 0.0_dp                  !! gone
     contains
-        procedure :: unbalanced
+        procedure :: held, unbalanced
     end type energy_balance
 
     integer, parameter :: part = 512   !! blocks that are taken through the friction law together
@@ -201,17 +201,6 @@ contains
         to%friction(:) = from%friction
         to%statev(:, :) = from%statev
     end subroutine copy_state
-
-    !> Energy that a state holds: of the motion, of the springs, of the contact [F L].
-    pure function stored(self, state) result(energy)
-        class(slider), intent(in) :: self
-        type(slider_state), intent(in) :: state
-        real(dp) :: energy
-
-        energy = 0.5_dp * self%mass * sum(state%v**2) + 0.5_dp * sum(state%spring**2) &
-            / self%stiffness + 0.5_dp * self%area * self%props(3) &
-            * sum(state%statev(:, statev_u_et)**2) + self%coupling_energy(state%x)
-    end function stored
 
     !> Change of u_n that brings the normal traction from `old` to `new`.
     pure function penetration_step(self, old, new) result(du_n)
@@ -364,12 +353,30 @@ contains
             energy%damped = energy%damped &
                 + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
         end if
-        energy%kinetic = 0.5_dp * self%mass * sum(new%v**2)
-        energy%spring = 0.5_dp * sum(new%spring**2) / self%stiffness &
-            + self%coupling_energy(new%x)
-        energy%contact = 0.5_dp * self%area * self%props(3) * sum(new%statev(:, statev_u_et)**2)
+        call self%take_stock(new, energy)
         energy%dissipated = self%area * sum(new%statev(:, statev_dissipation))
     end subroutine account
+
+    !> Energies that a state holds: of the motion, of the springs, of the contact.
+    pure subroutine take_stock(self, state, energy)
+        class(slider), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        type(energy_balance), intent(inout) :: energy
+
+        energy%kinetic = 0.5_dp * self%mass * sum(state%v**2)
+        energy%spring = 0.5_dp * sum(state%spring**2) / self%stiffness &
+            + self%coupling_energy(state%x)
+        energy%contact = 0.5_dp * self%area * self%props(3) &
+            * sum(state%statev(:, statev_u_et)**2)
+    end subroutine take_stock
+
+    !> Held by the springs, the contact and the motion together.
+    pure function held(self) result(total)
+        class(energy_balance), intent(in) :: self
+        real(dp) :: total   !! [F L]
+
+        total = self%kinetic + self%spring + self%contact
+    end function held
 
     !> What the balance does not explain: the error of the time integration.
     pure function unbalanced(self) result(rest)

@@ -15,7 +15,7 @@ module study
     implicit none
     private
 
-    public :: check_input, run_input
+    public :: check_input, directory_is_ready, is_readable, run_input, tell_failure
 
     integer, parameter, public :: exit_done = 0, exit_failed = 1, exit_bad_input = 2
 
@@ -28,15 +28,10 @@ contains
         integer, intent(out) :: exit_status
         type(namelist_file) :: file
         type(sweep_plan) :: plan
-        character(len=:), allocatable :: problem
         logical :: swept
 
         exit_status = exit_bad_input
-        call read_namelist_file(wanted%input, file, problem)
-        if (len(problem) > 0) then
-            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': ', problem
-            return
-        end if
+        if (.not. is_readable(wanted%input, file)) return
         swept = .false.
         if (wanted%verb == 'check') swept = file%has_group('sweep')
         if (swept) then
@@ -60,6 +55,36 @@ contains
         end if
     end subroutine check_input
 
+    !> Reads a file, or says why it cannot be read.
+    function is_readable(name, file) result(readable)
+        character(len=*), intent(in) :: name
+        type(namelist_file), intent(out) :: file
+        logical :: readable
+        character(len=:), allocatable :: problem
+
+        call read_namelist_file(name, file, problem)
+        readable = len(problem) == 0
+        if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
+    end function is_readable
+
+    !> Makes the directory of the output, or says that it cannot be written to.
+    function directory_is_ready(name) result(ready)
+        character(len=*), intent(in) :: name
+        logical :: ready
+
+        ready = make_directory(name)
+        if (.not. ready) write (error_unit, '(3a)') &
+            "stickslip: cannot write to the directory '", name, "'"
+    end function directory_is_ready
+
+    subroutine tell_failure(input, failure, base)
+        character(len=*), intent(in) :: input, failure
+        character(len=*), intent(in) :: base   !! of the names of the files that were written
+
+        write (error_unit, '(4a)') 'stickslip: ', input, ': the run failed ', failure
+        write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
+    end subroutine tell_failure
+
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.
     subroutine run_input(wanted, exit_status)
         type(command), intent(in) :: wanted
@@ -80,11 +105,7 @@ contains
         fields = ''
         if (run%fields > 0) fields = base // '_fields.csv'
         if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv) fields = base // '_fields.nc'
-        if (.not. make_directory(wanted%output)) then
-            write (error_unit, '(3a)') "stickslip: cannot write to the directory '", &
-                wanted%output, "'"
-            return
-        end if
+        if (.not. directory_is_ready(wanted%output)) return
         if (wanted%resume) then
             call start_run(run, from)
             call read_checkpoint(base // '.checkpoint', run, from, rows, bytes, problem)
@@ -116,9 +137,7 @@ contains
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
         exit_status = exit_done
         if (len(result%failure) > 0) then
-            write (error_unit, '(4a)') 'stickslip: ', wanted%input, ': the run failed ', &
-                result%failure
-            write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
+            call tell_failure(wanted%input, result%failure, base)
             exit_status = exit_failed
         end if
         if (.not. wanted%plot) return

@@ -1,7 +1,7 @@
 !> The picture of a sweep, drawn by gnuplot from the table: curves over one key, maps over two.
 module sweep_picture
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use picture, only : escaped, quoted, run_gnuplot
+    use picture, only : escaped, finish_picture, quoted
     use sweep_settings, only : sweep_axis
     use sweep_table, only : number_text
     use text_file, only : output_file
@@ -31,10 +31,7 @@ contains
         else
             call put_maps(script, stem, axes)
         end if
-        call script%finish()
-        problem = ''
-        if (script%failed) problem = 'cannot write ' // directory // '/' // stem // '.gp'
-        if (len(problem) == 0) call run_gnuplot(directory, stem, problem)
+        call finish_picture(script, directory, stem, problem)
     end subroutine draw_sweep
 
     !> Period and stress drop against the values. A combination that has none shows at zero.
