@@ -26,7 +26,7 @@ module checkpoint
         integer :: fields_due = 0   !! steps since the last fields
     end type snapshot
 
-    character(len=*), parameter :: first_words = 'stickslip checkpoint 2', last_words = 'end'
+    character(len=*), parameter :: first_words = 'stickslip checkpoint 3', last_words = 'end'
 
 contains
 
@@ -49,10 +49,10 @@ contains
             write (unit, iostat=status) first_words, digest(run), size(x%x), size(r%pieces), &
                 size(r%onsets), now%chain%count, x%time, x%drive, x%normal, x%x, x%v, x%a, &
                 x%spring, x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
-                s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, r%snap_backs, &
-                r%peak_velocity, r%energy, r%pieces, r%onsets, r%chain_events, r%largest_moment, &
-                now%rows_due, now%fields_due, records%rows, records%series%bytes, &
-                records%events%bytes, records%fields_place()
+                s%iterations, s%most_iterations, s%last_error, s%rule%contact, now%finder, &
+                r%steps, r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
+                r%chain_events, r%largest_moment, now%rows_due, now%fields_due, records%rows, &
+                records%series%bytes, records%events%bytes, records%fields_place()
             ! by itself: flang 22 ends a statement at an array of no elements of a derived type
             if (now%chain%count > 0 .and. status == 0) then
                 write (unit, iostat=status) now%chain%events(:now%chain%count)
@@ -103,8 +103,8 @@ contains
             associate (x => now%state, s => now%steps, r => now%result)
                 read (unit, iostat=status) x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, &
                     x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
-                    s%iterations, s%most_iterations, s%last_error, now%finder, r%steps, &
-                    r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
+                    s%iterations, s%most_iterations, s%last_error, s%rule%contact, now%finder, &
+                    r%steps, r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
                     r%chain_events, r%largest_moment, now%rows_due, now%fields_due, rows, bytes
                 if (under_way > 0 .and. status == 0) then
                     read (unit, iostat=status) now%chain%events(:under_way)

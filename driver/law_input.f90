@@ -9,7 +9,7 @@ module law_input
     implicit none
     private
 
-    public :: is_subloading, kinetic_coefficient, read_friction, typical_coefficient
+    public :: healing_rate, is_subloading, kinetic_coefficient, read_friction, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -58,6 +58,16 @@ contains
 
         yes = nint(props(1)) == law_subloading
     end function is_subloading
+
+    !> Growth of the friction coefficient of a contact at rest [1/T].
+    pure function healing_rate(props, mu) result(rate)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp), intent(in) :: mu         !! friction coefficient [-]
+        real(dp) :: rate
+
+        rate = 0.0_dp
+        if (is_subloading(props)) rate = props(7) * (props(4) - mu)
+    end function healing_rate
 
     !> The coefficient that stands for the strength of the contact: the static one, or that of
     !> steady sliding at the reference rate.

@@ -12,7 +12,7 @@ module slider_system
     implicit none
     private
 
-    public :: apply_normal_traction, copy_state, energy_balance, friction_forces, &
+    public :: apply_normal_traction, blend, energy_balance, friction_forces, &
         initial_state, initial_values, place, set_accelerations, slider, slider_state, swap_states
 
     !> What the first and the last block are coupled to.
@@ -186,21 +186,24 @@ contains
         after = x(1)
     end subroutine beyond_ends
 
-    !> `to = from` without new memory.
-    pure subroutine copy_state(from, to)
-        type(slider_state), intent(in) :: from
-        type(slider_state), intent(inout) :: to   !! allocated like `from`
+    !> Weighted sum of states; their moments, drives and loads are not touched.
+    pure subroutine blend(states, weights, mixed)
+        type(slider_state), intent(in) :: states(:)
+        real(dp), intent(in) :: weights(:)           !! one for each state [-]
+        type(slider_state), intent(inout) :: mixed   !! allocated like the states
+        integer :: k
 
-        to%time = from%time
-        to%drive = from%drive
-        to%normal = from%normal
-        to%x(:) = from%x
-        to%v(:) = from%v
-        to%a(:) = from%a
-        to%spring(:) = from%spring
-        to%friction(:) = from%friction
-        to%statev(:, :) = from%statev
-    end subroutine copy_state
+        mixed%x(:) = weights(1) * states(1)%x
+        mixed%v(:) = weights(1) * states(1)%v
+        mixed%friction(:) = weights(1) * states(1)%friction
+        mixed%statev(:, :) = weights(1) * states(1)%statev
+        do k = 2, size(states)
+            mixed%x(:) = mixed%x + weights(k) * states(k)%x
+            mixed%v(:) = mixed%v + weights(k) * states(k)%v
+            mixed%friction(:) = mixed%friction + weights(k) * states(k)%friction
+            mixed%statev(:, :) = mixed%statev + weights(k) * states(k)%statev
+        end do
+    end subroutine blend
 
     !> Change of u_n that brings the normal traction from `old` to `new`.
     pure function penetration_step(self, old, new) result(du_n)

@@ -1,22 +1,26 @@
 !> Chooses the steps in time, and repeats those that fail.
 !>
-!> Adaptive steps are taken twice, as a whole and in two halves. What separates the two estimates
-!> the error; where the step resolves the fastest oscillation, it also takes the leading term of the
-!> error away (Richardson extrapolation).
+!> Adaptive steps are taken as a whole and in two halves, those of the exponential rule in three
+!> thirds as well. From these the leading terms of the error are extrapolated away (Richardson); how
+!> much the coarsest one matters in that estimates the error.
 module step_control
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use exponential_rule, only : exponential
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
     use law_input, only : is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
-    use slider_system, only : apply_normal_traction, copy_state, set_accelerations, slider, &
+    use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
+    use turning_times, only : next_turn, turn
     implicit none
     private
 
     public :: stepper
+
+    integer, parameter :: most_levels = 3
 
     type :: stepper
         type(slider) :: system
@@ -32,17 +36,23 @@ module step_control
         integer :: iterations = 0, most_iterations = 0   !! of Newton's method, the latter in a step
         ! of adaptive steps alone
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
+        logical :: exponential = .false.   !! steps by the exponential rule, not by `method`
+        type(exponential) :: rule
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
         real(dp) :: pressing = 0.0_dp      !! largest normal force [F]
         integer :: order = 1               !! of the method, with the friction law in it
         real(dp) :: stiffness = 0.0_dp     !! against displacements in the last step [F/L]
         real(dp) :: last_error = 1.0_dp    !! of the step before, part of the tolerated one
         type(slider_state) :: middle       !! half-way through the last step
-        type(slider_state), private :: halves, whole   !! the end of it, by two steps and by one
+        integer, private :: levels = 2     !! ways in which each step is taken
+        real(dp), private :: weights(most_levels) = 0.0_dp   !! of its ends, to extrapolate
+        real(dp), private :: doubts(most_levels) = 0.0_dp    !! likewise, to estimate the error
+        type(slider_state), private :: ends(most_levels)   !! by one step, two halves, three thirds
+        type(slider_state), private :: passing             !! room for a state
     contains
         procedure :: begin, take_step, finished
-        procedure, private :: take_fixed_step, take_adaptive_step, try, try_twice, error_of, &
-            extrapolate, reversal, opening
+        procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, try, try_levels, &
+            error_of, extrapolate, reversal, opening
     end type stepper
 
     integer, parameter :: most_parts = 2**20   !! of a fixed step
@@ -74,10 +84,49 @@ contains
         self%pressing = run%area * run%drive%largest_normal()
         self%tolerated = run%rtol * max(typical_coefficient(run%props) * self%pressing, &
             tiny(1.0_dp) / epsilon(1.0_dp))
+        call self%choose_rule(run, size(start%x))
         self%middle = start
-        self%halves = start
-        self%whole = start
+        self%passing = start
+        self%ends = start
     end subroutine begin
+
+    !> The exponential rule serves one block with a mass, unless another method is asked for.
+    subroutine choose_rule(self, run, blocks)
+        class(stepper), intent(inout) :: self
+        type(settings), intent(in) :: run
+        integer, intent(in) :: blocks
+        real(dp), parameter :: negligible = 1.0e-6_dp   !! part of the tolerated error
+        type(newmark) :: default
+        integer :: k
+
+        self%exponential = blocks == 1 .and. run%mass > 0.0_dp .and. run%rho_infinity < 0.0_dp &
+            .and. .not. (abs(run%beta - default%beta) > 0.0_dp &
+            .or. abs(run%gamma - default%gamma) > 0.0_dp)
+        if (self%exponential) self%levels = 3
+        self%rule%tolerance = run%tolerance
+        self%rule%max_iterations = run%max_iterations
+        self%rule%negligible = negligible * self%tolerated / run%stiffness
+        self%weights(:self%levels) = [(extrapolation_weight(k, 1), k = 1, self%levels)]
+        self%doubts(1) = self%weights(1)
+        self%doubts(2:self%levels) = self%weights(2:self%levels) &
+            - [(extrapolation_weight(k, 2), k = 2, self%levels)]
+
+    contains
+
+        !> Weight of the end by k parts among those by `first` to `levels` parts: the polynomial in
+        !> a power of the step that passes through them, at step 0.
+        pure function extrapolation_weight(k, first) result(weight)
+            integer, intent(in) :: k, first
+            real(dp) :: weight
+            integer :: j
+
+            weight = 1.0_dp
+            do j = first, self%levels
+                if (j /= k) weight = weight / (1.0_dp - (real(j, dp) / k)**self%order)
+            end do
+        end function extrapolation_weight
+
+    end subroutine choose_rule
 
     pure function finished(self, state) result(yes)
         class(stepper), intent(in) :: self
@@ -104,7 +153,7 @@ contains
     end subroutine take_step
 
     !> One step from `old` to `time`, in one piece of the programme.
-    subroutine try(self, old, time, piece, new, report, guess)
+    subroutine try(self, old, time, piece, new, report, guess, first)
         class(stepper), intent(inout) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: time   !! [T]
@@ -112,9 +161,21 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements [L]
+        logical, intent(in), optional :: first   !! of an adaptive step: the rule is fitted to it
+        real(dp) :: drive, normal
 
-        call self%method%step(self%system, self%origin + self%drive%position(time), &
-            self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
+        drive = self%origin + self%drive%position(time)
+        normal = self%drive%normal_traction(time, piece)
+        if (.not. self%exponential) then
+            call self%method%step(self%system, drive, normal, time - old%time, old, new, report, &
+                guess)
+        else if (present(guess)) then
+            call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
+                present(first), guess(1))
+        else
+            call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
+                present(first))
+        end if
         new%time = time
         self%iterations = self%iterations + report%iterations
         self%most_iterations = max(self%most_iterations, report%iterations)
@@ -163,27 +224,31 @@ contains
         type(step_report), intent(out) :: report
         real(dp), parameter :: safety = 0.9_dp, most_growth = 4.0_dp, most_cut = 0.2_dp
         real(dp) :: limit, end, dt, error, power, event
-        integer :: piece
-        logical :: cut
+        integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
+        integer :: piece, cuts
 
-        power = 1.0_dp / (self%order + 1)
+        power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
         limit = min(self%drive%next_start(old%time), self%t_end)
         call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old)
-        cut = .false.
+        if (self%exponential) call expect_stick_after_turn(self%system, old, self%rule%contact)
+        event = huge(event)
+        cuts = 0
         do
-            end = end_of_step(old%time, self%dt, limit)
+            end = min(old%time + self%dt, event)
+            if (self%exponential) end = min(end, next_turn(self%system, old, &
+                self%rule%contact, self%drive%drive_velocity(old%time, piece)))
+            end = end_of_step(old%time, end - old%time, limit)
             dt = end - old%time
-            call self%try_twice(old, end, piece, report)
+            call self%try_levels(old, end, piece, report)
             self%stiffness = max(self%system%stiffness, report%stiffness)
             if (report%status >= 0) then
                 error = self%error_of()
                 if (error <= 1.0_dp) then
-                    event = self%opening(old, end, piece)
-                    if (.not. cut) event = min(event, self%reversal(old))
+                    event = min(self%opening(old, end, piece), self%reversal(old))
                     if (event >= end .or. event - old%time <= 1.0e-3_dp * dt) exit
-                    cut = .true.
-                    self%dt = event - old%time
+                    if (cuts == most_cuts) exit
+                    cuts = cuts + 1
                     cycle
                 end if
                 self%dt = dt * max(most_cut, safety * error**(-power))
@@ -197,11 +262,26 @@ contains
             end if
         end do
         error = max(error, 1.0e-4_dp)
-        self%dt = min(self%dt_max, dt * min(most_growth, safety * error**(-0.7_dp * power) &
-            * self%last_error**(0.4_dp * power)))
+        dt = dt * min(most_growth, safety * error**(-0.7_dp * power) &
+            * self%last_error**(0.4_dp * power))
+        ! a step that an event has cut says nothing against the one that was to be taken
+        if (end < old%time + 0.99_dp * self%dt) dt = max(dt, self%dt)
+        self%dt = min(self%dt_max, dt)
         self%last_error = error
-        call self%extrapolate(dt, new)
+        call self%extrapolate(end - old%time, new)
     end subroutine take_adaptive_step
+
+    !> A block that has just turned round is carried elastically at first.
+    pure subroutine expect_stick_after_turn(system, state, contact)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: state   !! of one block
+        real(dp), intent(inout) :: contact        !! expected stiffness of the contact [F/L]
+        real(dp), parameter :: slow = 0.1_dp      !! part of the velocity that is to come
+        real(dp) :: elastic
+
+        elastic = system%area * system%props(3)
+        if (elastic * state%v(1)**2 < slow**2 * system%mass * state%a(1)**2) contact = elastic
+    end subroutine expect_stick_after_turn
 
     !> No step is left that is much shorter than the one before the limit.
     pure function end_of_step(start, dt, limit) result(end)
@@ -216,113 +296,117 @@ contains
         end if
     end function end_of_step
 
-    !> In two steps and in one; the ends are left in `halves` and `whole`.
-    subroutine try_twice(self, old, end, piece, report)
+    !> The step as a whole, in halves, and in thirds; `middle` is the end of the first half.
+    subroutine try_levels(self, old, end, piece, report)
         class(stepper), intent(inout) :: self
         type(slider_state), intent(in) :: old
-        real(dp), intent(in) :: end         !! [T]
+        real(dp), intent(in) :: end         !! of the step [T]
         integer, intent(in) :: piece
         type(step_report), intent(out) :: report
+        real(dp) :: third
 
-        call self%try(old, old%time + 0.5_dp * (end - old%time), piece, self%middle, report)
+        call self%try(old, old%time + 0.5_dp * (end - old%time), piece, self%middle, report, &
+            first=.true.)
         if (report%status < 0) return
-        call self%try(self%middle, end, piece, self%halves, report)
+        call self%try(self%middle, end, piece, self%ends(2), report)
         if (report%status < 0) return
-        call self%try(old, end, piece, self%whole, report, guess=self%halves%x)
-    end subroutine try_twice
+        call self%try(old, end, piece, self%ends(1), report, guess=self%ends(2)%x)
+        if (report%status < 0 .or. self%levels < 3) return
+        third = (end - old%time) / 3.0_dp
+        call self%try(old, old%time + third, piece, self%ends(3), report)
+        if (report%status < 0) return
+        call self%try(self%ends(3), end - third, piece, self%passing, report)
+        if (report%status < 0) return
+        call self%try(self%passing, end, piece, self%ends(3), report, guess=self%ends(2)%x)
+    end subroutine try_levels
 
-    !> Error of the two halves, part of the tolerated one: displacement and slip as the force that
+    !> Estimate of the error, part of the tolerated one: displacement and slip as the force that
     !> they mean to the spring, velocity by the amplitude that it becomes, friction coefficient by
     !> the force that it changes.
-    pure function error_of(self) result(error)
-        class(stepper), intent(in) :: self
+    function error_of(self) result(error)
+        class(stepper), intent(inout) :: self
         real(dp) :: error
 
-        associate (a => self%halves, b => self%whole, s => self%system)
-            error = maxval(max(s%stiffness * abs(a%x - b%x), &
-                s%stiffness * sqrt(s%mass / self%stiffness) * abs(a%v - b%v), &
-                s%stiffness * abs(a%statev(:, statev_slip) - b%statev(:, statev_slip)), &
-                self%pressing * abs(a%statev(:, statev_mu) - b%statev(:, statev_mu))))
+        call blend(self%ends(:self%levels), self%doubts(:self%levels), self%passing)
+        associate (e => self%passing, s => self%system)
+            error = maxval(max(s%stiffness * abs(e%x), &
+                s%stiffness * sqrt(s%mass / self%stiffness) * abs(e%v), &
+                s%stiffness * abs(e%statev(:, statev_slip)), &
+                self%pressing * abs(e%statev(:, statev_mu))))
         end associate
-        error = error / ((2**self%order - 1) * self%tolerated)
+        error = error / self%tolerated
     end function error_of
 
-    !> The better of what is known about the end of the step. Extrapolation would amplify an
-    !> oscillation that is faster than the step, which takes a mass, and must not leave the range of
-    !> the law's variables.
+    !> The best of what is known about the end of the step. Extrapolation would amplify an
+    !> oscillation that is faster than a step of Newmark's, which takes a mass, and must not leave
+    !> the range of the law's variables.
     subroutine extrapolate(self, dt, new)
         class(stepper), intent(inout) :: self
         real(dp), intent(in) :: dt          !! [T]
         type(slider_state), intent(inout) :: new
-        real(dp) :: weight
+        real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
 
-        call copy_state(self%halves, new)
-        if (self%system%mass > 0.0_dp .and. self%stiffness * dt**2 > self%system%mass) return
-        weight = 1.0_dp / (2**self%order - 1)
-        new%statev = new%statev + weight * (new%statev - self%whole%statev)
-        new%statev(:, statev_status) = self%halves%statev(:, statev_status)
-        associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
-            if (is_subloading(self%system%props)) then
-                mu = min(self%system%props(4), max(self%system%props(5), mu))
-                r = min(1.0_dp, max(0.0_dp, r))
+        associate (finest_end => self%ends(self%levels))
+            new%time = finest_end%time
+            new%drive = finest_end%drive
+            new%normal = finest_end%normal
+            if (.not. self%exponential .and. self%system%mass > 0.0_dp &
+                .and. self%stiffness * dt**2 > self%system%mass) then
+                call blend(self%ends(:2), finest, new)
             else
-                mu = max(0.0_dp, mu)
-                r = max(0.5_dp * self%halves%statev(:, statev_r), r)
+                call blend(self%ends(:self%levels), self%weights(:self%levels), new)
             end if
+            new%statev(:, statev_status) = finest_end%statev(:, statev_status)
+            associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
+                if (is_subloading(self%system%props)) then
+                    mu = min(self%system%props(4), max(self%system%props(5), mu))
+                    r = min(1.0_dp, max(0.0_dp, r))
+                else
+                    mu = max(0.0_dp, mu)
+                    r = max(0.5_dp * finest_end%statev(:, statev_r), r)
+                end if
+            end associate
         end associate
         new%statev(:, statev_slip) = max(0.0_dp, new%statev(:, statev_slip))
         new%statev(:, statev_dissipation) = max(0.0_dp, new%statev(:, statev_dissipation))
-        new%x = new%x + weight * (new%x - self%whole%x)
-        new%v = new%v + weight * (new%v - self%whole%v)
         new%spring = self%system%stiffness * (new%drive - new%x)
-        new%friction = new%friction + weight * (new%friction - self%whole%friction)
         call set_accelerations(self%system, new)
     end subroutine extrapolate
 
-    !> When the block turned round within the last step, if it stuck or slipped differently since:
-    !> friction has a kink there.
+    !> When slip began or ended within the last step, unless next to its ends: friction has a kink
+    !> there. In steps of Newmark's it counts if a block stuck or slipped differently since.
     pure function reversal(self, old) result(time)
         class(stepper), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp) :: time   !! [T]; huge without such a moment
+        real(dp), parameter :: negligible = 0.1_dp   !! part of the tolerated error
 
         time = huge(time)
         associate (before => old%statev(:, statev_status), &
-            after => self%halves%statev(:, statev_status))
-            if (all(nint(before) == nint(after))) return
+            after => self%ends(2)%statev(:, statev_status))
+            if (.not. self%exponential .and. all(nint(before) == nint(after))) return
         end associate
-        time = turn(old, self%middle)
-        if (time <= self%middle%time) return
-        time = turn(self%middle, self%halves)
-    end function reversal
-
-    !> When the velocity of the first block to do so changes its sign between two states, by cubic
-    !> interpolation; huge if none does.
-    pure function turn(a, b) result(time)
-        type(slider_state), intent(in) :: a, b
-        real(dp) :: time   !! [T]
-        real(dp) :: dt, low, high, s
-        integer :: i, k
-
+        time = turn(self%system, old, self%middle)
+        if (time < huge(time)) then
+            if (moved(old, time - old%time) > negligible * self%tolerated) return
+        end if
+        time = turn(self%system, self%middle, self%ends(2))
+        if (time >= huge(time)) return
+        if (moved(self%ends(2), self%ends(2)%time - time) > negligible * self%tolerated) return
         time = huge(time)
-        dt = b%time - a%time
-        do i = 1, size(a%x)
-            if (a%v(i) * b%v(i) >= 0.0_dp) cycle
-            low = 0.0_dp
-            high = 1.0_dp
-            do k = 1, 30
-                s = 0.5_dp * (low + high)
-                if ((a%v(i) * (1.0_dp + 2.0_dp * s) + dt * a%a(i) * s) * (1.0_dp - s)**2 * a%v(i) &
-                    + (b%v(i) * (3.0_dp - 2.0_dp * s) - dt * b%a(i) * (1.0_dp - s)) * s**2 &
-                    * a%v(i) > 0.0_dp) then
-                    low = s
-                else
-                    high = s
-                end if
-            end do
-            time = min(time, a%time + s * dt)
-        end do
-    end function turn
+
+    contains
+
+        !> What blocks as fast as in a state move in a time, as a spring force.
+        pure function moved(state, dt) result(force)
+            type(slider_state), intent(in) :: state
+            real(dp), intent(in) :: dt   !! [T]
+            real(dp) :: force            !! [F]
+
+            force = self%system%stiffness * maxval(abs(state%v)) * dt
+        end function moved
+
+    end function reversal
 
     !> When the normal traction vanishes, or comes back, within a step; huge if neither.
     pure function opening(self, old, end, piece) result(time)
@@ -337,7 +421,7 @@ contains
 
         time = huge(time)
         open_before = old%normal <= 0.0_dp
-        if (open_before .eqv. self%halves%normal <= 0.0_dp) return
+        if (open_before .eqv. self%ends(2)%normal <= 0.0_dp) return
         low = old%time
         high = end
         do k = 1, 52

@@ -1,0 +1,102 @@
+!> When blocks turn round: when slip begins or ends, and friction has a kink.
+module turning_times
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : statev_mu, statev_u_et
+    use law_input, only : healing_rate
+    use slider_system, only : slider, slider_state
+    implicit none
+    private
+
+    public :: next_turn, turn
+
+contains
+
+    !> Velocity at which the traction grows no faster than the strength: slower, a block sticks.
+    !> Nearly zero, but for a contact that heals or is being loaded.
+    elemental function sticking_velocity(u_et, mu, healing, loading) result(velocity)
+        real(dp), intent(in) :: u_et      !! elastic displacement of the contact [L]
+        real(dp), intent(in) :: mu        !! friction coefficient [-]
+        real(dp), intent(in) :: healing   !! its growth at rest [1/T]
+        real(dp), intent(in) :: loading   !! growth of the normal traction, part of it [1/T]
+        real(dp) :: velocity              !! [L/T]
+
+        velocity = 0.0_dp
+        if (mu > 0.0_dp) velocity = u_et * (healing / mu + loading)
+    end function sticking_velocity
+
+    !> When the first block to do so begins or ends to slip between two states: its velocity passes
+    !> the one at which it sticks, found by cubic interpolation; huge if none does.
+    pure function turn(system, a, b) result(time)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: a, b
+        real(dp) :: time   !! [T]
+        real(dp) :: dt, loading, v_a, v_b, low, high, s
+        integer :: i, k
+
+        time = huge(time)
+        dt = b%time - a%time
+        loading = 0.0_dp
+        if (a%normal > 0.0_dp .and. b%normal > 0.0_dp) loading = 2.0_dp * (b%normal - a%normal) &
+            / (dt * (a%normal + b%normal))
+        do i = 1, size(a%x)
+            v_a = above(a)
+            v_b = above(b)
+            if (v_a * v_b >= 0.0_dp) cycle
+            low = 0.0_dp
+            high = 1.0_dp
+            do k = 1, 30
+                s = 0.5_dp * (low + high)
+                if ((v_a * (1.0_dp + 2.0_dp * s) + dt * a%a(i) * s) * (1.0_dp - s)**2 * v_a &
+                    + (v_b * (3.0_dp - 2.0_dp * s) - dt * b%a(i) * (1.0_dp - s)) * s**2 &
+                    * v_a > 0.0_dp) then
+                    low = s
+                else
+                    high = s
+                end if
+            end do
+            time = min(time, a%time + s * dt)
+        end do
+
+    contains
+
+        !> Velocity beyond the one at which block `i` sticks.
+        pure function above(state) result(velocity)
+            type(slider_state), intent(in) :: state
+            real(dp) :: velocity   !! [L/T]
+
+            associate (mu => state%statev(i, statev_mu))
+                velocity = state%v(i) - sticking_velocity(state%statev(i, statev_u_et), mu, &
+                    healing_rate(system%props, mu), loading)
+            end associate
+        end function above
+
+    end function turn
+
+    !> When a block on its springs begins or ends to slip next, were it not damped: its velocity
+    !> swings about the one with which the drive pulls the springs along. Huge if it never does.
+    pure function next_turn(system, state, contact, velocity) result(time)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: state   !! of one block, with a mass
+        real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
+        real(dp), intent(in) :: velocity          !! of the drive [L/T]
+        real(dp) :: time                          !! [T]
+        real(dp), parameter :: just_turned = 0.01_dp, pi = acos(-1.0_dp)
+        real(dp) :: omega, mean, amplitude, sticking, phase, reach
+
+        time = huge(time)
+        omega = sqrt((system%stiffness + contact) / system%mass)
+        mean = system%stiffness * velocity / (system%stiffness + contact)
+        amplitude = hypot(state%v(1) - mean, state%a(1) / omega)
+        associate (mu => state%statev(1, statev_mu))
+            sticking = sticking_velocity(state%statev(1, statev_u_et), mu, &
+                healing_rate(system%props, mu), 0.0_dp)
+        end associate
+        if (amplitude <= abs(sticking - mean)) return
+        phase = atan2(state%a(1) / omega, state%v(1) - mean)   ! of the crest of the velocity
+        reach = acos((sticking - mean) / amplitude)            ! from there to a turn
+        phase = min(modulo(phase - reach - just_turned, 2.0_dp * pi), &
+            modulo(phase + reach - just_turned, 2.0_dp * pi)) + just_turned
+        time = state%time + phase / omega
+    end function next_turn
+
+end module turning_times
