@@ -107,8 +107,8 @@ contains
             normal(1) * along(2) - normal(2) * along(1)]
     end function slip_axes
 
-    !> The law's tangential axes: the projection of the global x axis on the surface, or of z where x
-    !> is the normal, and in space what is at right angles to it. So Abaqus chooses axes, too.
+    !> The law's tangential axes: the projection of the global x axis on the surface, or of z where
+    !> x is the normal, and in space what is at right angles to it. So Abaqus chooses axes, too.
     pure function surface_axes(normal) result(columns)
         real(wp), intent(in) :: normal(ndir)
         real(wp) :: columns(ndir, nfricdir)

@@ -89,6 +89,8 @@ contains
                 next = h%depth * draw(0.2_dp, 0.5_dp)
             case (29:)
                 turn = 10.0_dp * turn
+            case default
+                continue   ! sheared on
             end select
             h%du(:, k) = [next - u_n, length * cos(angle + turn), length * sin(angle + turn)]
             u_n = next
