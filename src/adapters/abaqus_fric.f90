@@ -8,10 +8,10 @@ subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev
     node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, chrlngth, &
     props, nprops)
     use friction_host, only : cut_factor, elastic_energy, error_text, forget_elastic, &
-        rotate_tangential, stdb_abqerr
+        host_tangential, rotate_tangential, stdb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_no_convergence, friction_tangential, &
-        statev_dissipation, statev_size, statev_u_et
+    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
+        statev_size, statev_u_et
     implicit none
     integer, intent(inout) :: lm              !! in: 2 was open; out: 0 relative motion
     integer, intent(in) :: nfdir              !! tangential directions, 1 or 2
@@ -44,7 +44,7 @@ subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev
         if (nfdir == 2) call rotate_tangential(drot, state)
         if (all(abs(tau) <= 0.0_wp)) call forget_elastic(props, state)
         start = state
-        call friction_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
+        call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stdb_abqerr(-3, error_text('FRIC', status), [noel, npt], time, [ciname(1:8)])

@@ -3,17 +3,18 @@
 !>
 !>     *FRICTION, USER, DEPVAR=8, PROPERTIES=9   with the constants of `friction_update`
 !>
-!> The local axes turn with the slip from call to call. So statev(2:4) holds the elastic tangential
+!> The local axes turn with the slip from call to call, and without slip there are none. So the law
+!> has axes of its own that stay with the surface, and statev(2:4) holds the elastic tangential
 !> displacement as a vector in global axes; the normal displacement is Abaqus's own.
 subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, nmstnod, nfricdir, &
     ndir, nstatevar, nprops, ntemp, npred, numdeftfv, jslvuid, jmstuid, jconslvid, jconmstid, &
     timstep, timglb, dtimprev, surfint, surfslv, surfmst, lconttype, dslipfric, fstickforce, &
     ftangprev, fnormal, frictionwork, shape, coordslv, coordmst, dircossl, dircosn, props, &
     areaslv, tempslv, predefslv, tempmst, predefmst)
-    use friction_host, only : error_text, xplb_abqerr
+    use friction_host, only : error_text, host_tangential, xplb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_tangential, statev_size, statev_u_et, &
-        statev_u_n
+    use friction_mod, only : friction_bad_size, friction_zero_time_increment, statev_size, &
+        statev_u_et, statev_u_n
     implicit none
     integer, intent(in) :: ncontact                            !! points in contact
     integer, intent(in) :: nslvnod                             !! points of the surface
@@ -41,7 +42,8 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
     integer, intent(in) :: jslvuid(*), jmstuid(*), jconmstid(*)
     character(len=80), intent(in) :: surfint, surfslv, surfmst
     real(wp) :: tau(nfricdir), dtau_du(nfricdir, nfricdir), dtau_dp(nfricdir), area
-    real(wp) :: axes(ndir, nfricdir), state(statev_size), no_slip(nfricdir)
+    real(wp) :: axes(ndir, nfricdir), turn(nfricdir, nfricdir), state(statev_size), &
+        no_slip(nfricdir)
     logical :: in_contact(nslvnod)
     integer :: c, i, status
 
@@ -52,34 +54,38 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
     end if
 
     in_contact = .false.
+    no_slip = 0.0_wp
     do c = 1, ncontact
         i = jconslvid(c)
         area = areaslv(i)
         in_contact(i) = area > 0.0_wp
         ftangential(:, c) = 0.0_wp
         if (.not. in_contact(i)) cycle
-        axes = local_axes(dircossl(:, c), dircosn(:, c))
+        axes = surface_axes(dircosn(:, c))
+        turn = matmul(transpose(axes), slip_axes(dircossl(:, c), dircosn(:, c)))
         call load_state(i)
-        call friction_tangential(dslipfric(1:nfricdir, c), fnormal(c) / area, dtimprev, props, &
-            state, tau, dtau_du, dtau_dp, status)
+        call host_tangential(matmul(turn, dslipfric(1:nfricdir, c)), fnormal(c) / area, dtimprev, &
+            props, state, tau, dtau_du, dtau_dp, status)
+        ! where no time has passed nothing has slid, whatever the host moved into place
+        if (status == friction_zero_time_increment) call host_tangential(no_slip, &
+            fnormal(c) / area, dtimprev, props, state, tau, dtau_du, dtau_dp, status)
         if (status < 0) then
             call refuse(i)
             return
         end if
         call store_state(i)
-        ftangential(:, c) = -tau * area
+        ftangential(:, c) = -matmul(tau, turn) * area
         ! the host takes what opposes the slip, and no more than prevents it
         ftangential(1, c) = min(max(ftangential(1, c), -fstickforce(c)), 0.0_wp)
     end do
 
     ! points out of contact carry nothing and heal
     axes = 0.0_wp
-    no_slip = 0.0_wp
     do i = 1, nslvnod
         if (in_contact(i)) cycle
         call load_state(i)
-        call friction_tangential(no_slip, 0.0_wp, dtimprev, props, state, tau, dtau_du, &
-            dtau_dp, status)
+        call host_tangential(no_slip, 0.0_wp, dtimprev, props, state, tau, dtau_du, dtau_dp, &
+            status)
         if (status < 0) then
             call refuse(i)
             return
@@ -89,9 +95,9 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
 
 contains
 
-    !> Tangential axes as columns: along the slip, and in space at right angles to it and the
-    !> normal.
-    pure function local_axes(along, normal) result(columns)
+    !> The host's tangential axes as columns: along the slip, and in space at right angles to it and
+    !> the normal.
+    pure function slip_axes(along, normal) result(columns)
         real(wp), intent(in) :: along(ndir), normal(ndir)
         real(wp) :: columns(ndir, nfricdir)
 
@@ -99,9 +105,29 @@ contains
         if (ndir == 3) columns(:, 2) = [normal(2) * along(3) - normal(3) * along(2), &
             normal(3) * along(1) - normal(1) * along(3), &
             normal(1) * along(2) - normal(2) * along(1)]
-    end function local_axes
+    end function slip_axes
 
-    !> State with the elastic displacement in local axes.
+    !> The law's tangential axes: the projection of the global x axis on the surface, or of z where
+    !> x is the normal, and in space what is at right angles to it. So Abaqus chooses axes, too.
+    pure function surface_axes(normal) result(columns)
+        real(wp), intent(in) :: normal(ndir)
+        real(wp) :: columns(ndir, nfricdir)
+        real(wp), parameter :: within = 1.75e-3_wp   ! a tenth of a degree
+        real(wp) :: along(ndir)
+        integer :: axis
+
+        if (ndir == 2) then
+            columns(:, 1) = [normal(2), -normal(1)]
+            return
+        end if
+        axis = 1
+        if (norm2(normal(2:3)) < within) axis = 3
+        along = -normal(axis) * normal
+        along(axis) = along(axis) + 1.0_wp
+        columns = slip_axes(along / norm2(along), normal)
+    end function surface_axes
+
+    !> State with the elastic displacement in the law's axes.
     subroutine load_state(point)
         integer, intent(in) :: point
 

@@ -11,8 +11,8 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
     use friction_host, only : elastic_energy, error_text, interface_update, rotate_tangential, &
         xplb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, statev_dissipation, statev_size, statev_u_et, &
-        statev_u_n
+    use friction_mod, only : friction_bad_size, friction_zero_time_increment, statev_dissipation, &
+        statev_size, statev_u_et, statev_u_n
     implicit none
     integer, intent(in) :: nslvnod                         !! points
     integer, intent(in) :: ndir                            !! components, 2 or 3
@@ -34,9 +34,10 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
         tempmst(*), dtempmst(*), predefmst(*), dpredefmst(*)
     integer, intent(in) :: jslvuid(*), jmstuid(*), jconmstid(*)
     character(len=80), intent(in) :: surfint, surfslv, surfmst
-    real(wp) :: state(statev_size), stiffness(ndir, ndir), dissipated
+    real(wp) :: state(statev_size), stiffness(ndir, ndir), no_motion(ndir), dissipated
     integer :: i, status
 
+    no_motion = 0.0_wp
     do i = 1, nslvnod
         status = friction_bad_size
         if (nstatevar >= statev_size) then
@@ -45,6 +46,9 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
             if (ndir == 3) call rotate_tangential(drot(:, :, i), state)
             call interface_update(rdisp(:, i), drdisp(:, i), dtimcur, props, state, stress(:, i), &
                 stiffness, status)
+            ! where no time has passed nothing has slid, whatever the host moved into place
+            if (status == friction_zero_time_increment) call interface_update(rdisp(:, i), &
+                no_motion, dtimcur, props, state, stress(:, i), stiffness, status)
         end if
         if (status < 0) then
             call xplb_abqerr(-3, error_text('VUINTER', status), jslvuid(i:i), [timglb], &
@@ -54,6 +58,9 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
         sed(i) = elastic_energy(props, state(statev_u_n), &
             state(statev_u_et:statev_u_et + ndir - 2))
         sfd(i) = state(statev_dissipation) - dissipated
+        scd(i) = 0.0_wp
+        spd(i) = 0.0_wp
+        svd(i) = 0.0_wp
         statev(1:statev_size, i) = state
     end do
 end subroutine vuinter

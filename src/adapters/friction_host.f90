@@ -2,17 +2,20 @@
 module friction_host
     use friction_kinds, only : wp
     use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
-        friction_snap_back, friction_tangential, friction_update, statev_status, statev_u_et, &
-        statev_u_n
+        friction_snap_back, friction_tangential, friction_update, friction_zero_time_increment, &
+        statev_status, statev_u_et, statev_u_n
     implicit none
     private
 
-    public :: cut_factor, elastic_energy, error_text, forget_elastic, interface_update, &
-        rotate_tangential
+    public :: cut_factor, elastic_energy, error_text, forget_elastic, host_tangential, &
+        host_update, interface_update, rotate_tangential
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
     public :: stdb_abqerr, xplb_abqerr
+
+    !> Too short for anything to happen in it [T].
+    real(wp), parameter :: instant = 1.0e-200_wp
 
     interface
         !> Abaqus/Standard's utility for messages; lop = -3 ends the job.
@@ -39,6 +42,39 @@ module friction_host
     end interface
 
 contains
+
+    !> `friction_update`, also for a host that asks for the forces as they stand, with neither time
+    !> nor motion. Laws of the slip rate cannot do without time; an instant leaves all as it is.
+    pure subroutine host_update(du, dtime, props, statev, traction, tangent, status)
+        real(wp), intent(in) :: du(:)              !! as in `friction_update`, and so on [L]
+        real(wp), intent(in) :: dtime              !! [T]
+        real(wp), intent(in) :: props(:)
+        real(wp), intent(inout) :: statev(:)
+        real(wp), intent(inout) :: traction(:)     !! [F/L^2]
+        real(wp), intent(inout) :: tangent(:, :)   !! [F/L^3]
+        integer, intent(out) :: status
+
+        call friction_update(du, dtime, props, statev, traction, tangent, status)
+        if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
+        call friction_update(du, instant, props, statev, traction, tangent, status)
+    end subroutine host_update
+
+    !> The same of `friction_tangential`.
+    pure subroutine host_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
+        real(wp), intent(in) :: du(:)            !! as in `friction_tangential`, and so on [L]
+        real(wp), intent(in) :: pressure         !! [F/L^2]
+        real(wp), intent(in) :: dtime            !! [T]
+        real(wp), intent(in) :: props(:)
+        real(wp), intent(inout) :: statev(:)
+        real(wp), intent(inout) :: tau(:)        !! [F/L^2]
+        real(wp), intent(inout) :: by_du(:, :)   !! [F/L^3]
+        real(wp), intent(inout) :: by_p(:)       !! [-]
+        integer, intent(out) :: status
+
+        call friction_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
+        if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
+        call friction_tangential(du, pressure, instant, props, statev, tau, by_du, by_p, status)
+    end subroutine host_tangential
 
     !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u.
     pure subroutine rotate_tangential(drot, statev)
@@ -91,7 +127,7 @@ contains
         end if
         call place_point(u_n, props, statev, status)
         if (status < 0) return
-        call friction_update(du, dtime, props, statev, stress, stiffness, status)
+        call host_update(du, dtime, props, statev, stress, stiffness, status)
         if (status < 0) return
         stress(1) = -stress(1)
         stiffness(2:, 1) = -stiffness(2:, 1)

@@ -2,10 +2,10 @@
 !> UMATs of Abaqus and CalculiX share.
 module friction_layer
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-    use friction_host, only : elastic_energy
+    use friction_host, only : elastic_energy, host_update
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_property, friction_bad_size, friction_update, &
-        statev_dissipation, statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_property, friction_bad_size, statev_dissipation, &
+        statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -50,7 +50,7 @@ contains
         modulus = props(2)
         if (thickness <= 0.0_wp .or. modulus < 0.0_wp) return
 
-        call friction_update(thickness * dstran(at%place(1:n)), dtime, props(3:), statev, &
+        call host_update(thickness * dstran(at%place(1:n)), dtime, props(3:), statev, &
             traction(1:n), tangent(1:n, 1:n), status)
         if (status < 0) return
         call extend_in_plane(at, modulus, dstran, stress, ddsdde, sse)

@@ -11,9 +11,9 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
     use, intrinsic :: iso_fortran_env, only : error_unit
-    use friction_host, only : error_text
+    use friction_host, only : error_text, host_update
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_update, statev_size
+    use friction_mod, only : friction_bad_size, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! ntens 6
     integer, intent(in) :: nstatv, nprops
@@ -32,7 +32,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     integer :: status
 
     status = friction_bad_size
-    if (ntens == 6 .and. nstatv >= statev_size) call friction_update(2.0_wp * dstran(places), &
+    if (ntens == 6 .and. nstatv >= statev_size) call host_update(2.0_wp * dstran(places), &
         dtime, props, statev, traction, tangent, status)
     if (status < 0) then   ! this host has no way to cut the step or to hear of an error
         write (error_unit, '(a)') trim(error_text('Kratos UMAT', status))

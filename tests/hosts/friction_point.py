@@ -5,6 +5,18 @@ STICKSLIP_LIBRARY names the shared library.
 import ctypes
 import os
 
+# law, alpha_n, alpha_t and what follows (docs/laws.md): constants under which a host is run, for N, mm and s, its
+# pressures of 3 to 4 N/mm^2, and slips of some hundredths of a millimetre
+LAWS = {
+    'subloading': [1, 1000, 800, 0.45, 0.25, 8, 0.2, 60],
+    'subloading, exact rate': [1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.45, 1],
+    'Coulomb, capped': [2, 1000, 800, 0.4, 0.8],
+    'static-kinetic': [3, 1000, 800, 0.45, 0.25, 1],
+    'rate-and-state': [4, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0, 0.5],
+    'slip-weakening': [5, 1000, 800, 0.45, 0.25, 1e-2],
+}
+
+
 Numbers = ctypes.POINTER(ctypes.c_double)
 
 

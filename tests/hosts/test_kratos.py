@@ -13,6 +13,7 @@ sys.path[:0] = [str(HERE), str(HERE.parents[1] / 'examples/kratos')]
 
 import friction_point  # noqa: E402
 
+os.environ['OMP_NUM_THREADS'] = '1'   # for Kratos: on three elements threads wait for each other, and wait busily
 HAVE_KRATOS = importlib.util.find_spec('KratosMultiphysics') is not None
 PRESSED, DT = -0.004, 0.01
 
@@ -34,11 +35,11 @@ def programme():
 
 @unittest.skipUnless(HAVE_KRATOS, 'Kratos is not installed: ./dev hosts installs it')
 class Blocks(unittest.TestCase):
-    def run_blocks(self, dimension):
+    def run_blocks(self, dimension, name, friction):
         import two_blocks
-        blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], dimension, dt=DT)
+        blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], dimension, friction, dt=DT)
         normal = dimension - 1
-        points = [friction_point.FrictionPoint(two_blocks.FRICTION) for _ in blocks.layers[1]]
+        points = [friction_point.FrictionPoint(friction) for _ in blocks.layers[1]]
         old = [[0.0] * dimension for _ in points]
         area = 1.0 / len(points)
         worst, worst_state, most, sticking, slipping = 0.0, 0.0, 0, 0, 0
@@ -59,20 +60,29 @@ class Blocks(unittest.TestCase):
                 wanted = sum(point.statev[place] for point in points) / len(points)
                 scale = abs(PRESSED) if place in (1, 2, 3) else 1.0
                 worst_state = max(worst_state, abs(found - wanted) / scale)
-        print(f'\n  {dimension}D: {len(programme())} steps, worst difference {worst:.1e} of the pressing force, '
+        print(f'\n  {dimension}D, {name}: {len(programme())} steps, worst difference {worst:.1e} of the pressing force, '
               f'{worst_state:.1e} in the state, '
               f'most Newton iterations {most}; slip in {slipping} steps, stick in {sticking}')
         self.assertLess(worst, 1e-7)
         self.assertLess(worst_state, 1e-7)
         self.assertLessEqual(most, 4)
-        self.assertGreater(slipping, 40)
-        self.assertGreater(sticking, 5)
+        self.assertGreater(slipping, 20)
+        if name != 'rate-and-state':   # which creeps under any load
+            self.assertGreater(sticking, 5)
 
-    def test_two_dimensions(self):
-        self.run_blocks(2)
+    def test_two_dimensions_under_every_law(self):
+        for name, friction in friction_point.LAWS.items():
+            with self.subTest(law=name):
+                self.run_blocks(2, name, friction)
 
-    def test_three_dimensions(self):
-        self.run_blocks(3)
+    def test_three_dimensions_under_every_law(self):
+        for name, friction in friction_point.LAWS.items():
+            with self.subTest(law=name):
+                self.run_blocks(3, name, friction)
+
+    def test_the_example_s_own_constants_are_these(self):
+        import two_blocks
+        self.assertEqual(two_blocks.FRICTION, friction_point.LAWS['subloading'])
 
 
 if __name__ == '__main__':

@@ -1,0 +1,64 @@
+"""What a user of CalculiX or Kratos sees of an error in the friction routine: a line that names the cause, and the
+end of the run. Each error is met in a process of its own, which loads the host's library and calls `umat_` in it.
+
+STICKSLIP_CALCULIX, STICKSLIP_KRATOS: the shared libraries.
+"""
+import os
+import subprocess
+import sys
+import unittest
+
+CALL = """
+import ctypes, sys
+path, host, dtime, *numbers = sys.argv[1:]
+props = [float(number) for number in numbers]
+if host == 'calculix':
+    props = [0.1, 1.0, *props]
+Six, Full, State = ctypes.c_double * 6, ctypes.c_double * 36, ctypes.c_double * 8
+real, whole = (lambda x: ctypes.byref(ctypes.c_double(x))), (lambda k: ctypes.byref(ctypes.c_int(k)))
+unset, zero = (None if host == 'kratos' else real(0.0)), Full()
+time = (ctypes.c_double * 2)()
+shear = Six(0.0, 0.0, -0.01, 0.0, 0.01, 0.0)
+name = ctypes.create_string_buffer(b'@ABAQUS_STICKSLIP'.ljust(80))
+step = (ctypes.c_int * 4)(1, 1, 1, 1)
+ctypes.CDLL(path).umat_(
+    Six(), State(), Full(), real(0.0), real(0.0), real(0.0), unset, unset and zero, unset and zero, unset, Six(), shear,
+    time, real(float(dtime)), unset, unset, unset, unset, name, whole(3), whole(3), whole(6), whole(8),
+    (ctypes.c_double * len(props))(*props), whole(len(props)), unset and zero, unset and zero,
+    None if host == 'kratos' else real(-1.0), unset, unset and zero, unset and zero, whole(7), whole(5),
+    unset, unset, step, whole(1), ctypes.c_size_t(80))
+print('solved')
+"""
+
+RATE_AND_STATE = (4, 1000, 800, 0.01, 0.015, 1e-3, 1.0, 0.4)
+
+
+class Errors(unittest.TestCase):
+    def call(self, host, props, dtime=0.1):
+        library = os.environ['STICKSLIP_' + host.upper()]
+        return subprocess.run([sys.executable, '-c', CALL, library, host, str(dtime), *map(str, props)], text=True,
+                              capture_output=True, check=False)
+
+    def test_valid_input_is_solved(self):
+        for host in ('calculix', 'kratos'):
+            result = self.call(host, RATE_AND_STATE)
+            self.assertEqual((result.returncode, result.stdout), (0, 'solved\n'), result.stderr)
+
+    def test_calculix_hears_the_cause_and_stops_with_201(self):
+        for code, props, dtime in ((-2, (77, *RATE_AND_STATE[1:]), 0.1), (-3, (2, 1000, 800, -0.4), 0.1),
+                                   (-1, (2, 1000, 800), 0.1), (-9, RATE_AND_STATE, 0.0)):
+            result = self.call('calculix', props, dtime)
+            self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
+            self.assertRegex(result.stdout, rf'\*ERROR in umat: stickslip, UMAT, code {code}: .*, element 7, point 5')
+
+    def test_kratos_hears_the_cause_and_stops(self):
+        for code, props, dtime in ((-2, (77, *RATE_AND_STATE[1:]), 0.1), (-3, (2, 1000, 800, -0.4), 0.1),
+                                   (-1, (2, 1000, 800), 0.1), (-9, RATE_AND_STATE, 0.0)):
+            result = self.call('kratos', props, dtime)
+            self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+            self.assertIn(f'stickslip, Kratos UMAT, code {code}: ', result.stderr)
+            self.assertNotIn('solved', result.stdout)
+
+
+if __name__ == '__main__':
+    unittest.main()
