@@ -4,7 +4,8 @@
 !>     *FRICTION, USER, DEPVAR=8, PROPERTIES=9   with the constants of `friction_update`
 !>
 !> The local axes turn with the slip from call to call. So statev(2:4) holds the elastic tangential
-!> displacement as a vector in global axes; the normal displacement is Abaqus's own.
+!> displacement as a vector in global axes; the normal displacement is Abaqus's own. Nothing tells
+!> axes of the surface: orthotropic friction is refused in three dimensions.
 subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, nmstnod, nfricdir, &
     ndir, nstatevar, nprops, ntemp, npred, numdeftfv, jslvuid, jmstuid, jconslvid, jconmstid, &
     timstep, timglb, dtimprev, surfint, surfslv, surfmst, lconttype, dslipfric, fstickforce, &
@@ -12,8 +13,8 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
     areaslv, tempslv, predefslv, tempmst, predefmst)
     use friction_host, only : error_text, xplb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_tangential, statev_size, statev_u_et, &
-        statev_u_n
+    use friction_mod, only : friction_bad_axis, friction_bad_size, friction_is_orthotropic, &
+        friction_tangential, statev_size, statev_u_et, statev_u_n
     implicit none
     integer, intent(in) :: ncontact                            !! points in contact
     integer, intent(in) :: nslvnod                             !! points of the surface
@@ -47,6 +48,11 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
 
     status = friction_bad_size
     if (nstatevar < statev_size .or. nfricdir /= ndir - 1) then
+        call refuse(0)
+        return
+    end if
+    status = friction_bad_axis
+    if (nfricdir > 1 .and. friction_is_orthotropic(props)) then
         call refuse(0)
         return
     end if
