@@ -82,24 +82,24 @@ contains
         type(unloaded) :: there
         type(sliding) :: slid
         real(wp) :: from, low, high, g
-        logical :: found
+        logical :: found, alone
 
         this = load(pressure, dt, old)
         status = friction_ok
         x = 0.0_wp
         call slide_to(surface, spring, this, x, there, answer, g)
         if (g > 0.0_wp) then   ! else the trial is above the strength by round-off alone
-            call next_root(surface, spring, this, x, there, g, low, high, found)
+            call next_root(surface, spring, this, x, there, g, low, high, found, alone)
             if (.not. found) low = high
             call bracketed_newton(surface, spring, this, low, high, x, there, answer, status)
-            if (status /= friction_ok) return
+            if (status /= friction_ok .or. alone) return
         end if
         ! Close to zero slip, two roots also have to differ by more than round-off of the trial.
         from = x + max(apart * x, 100.0_wp * epsilon(apart) * spring%trial &
             / (there%stiffness * there%rate))
         if (from >= spring%x_end) return
         call slide_to(surface, spring, this, from, there, slid, g)
-        call next_root(surface, spring, this, from, there, g, low, high, found)
+        call next_root(surface, spring, this, from, there, g, low, high, found, alone)
         if (found) status = friction_snap_back
     end subroutine return_along
 
@@ -120,7 +120,8 @@ contains
     !> With L the most that g can rise per slip between a and b, [a, b] holds no root if
     !> g(b) > L (b - a) > 0 or g(a) < -L (b - a) < 0, and one at most if L <= 0. The spring unloads
     !> most slowly at the end of a stretch.
-    pure subroutine next_root(surface, spring, this, from, start, g_start, low, high, found)
+    pure subroutine next_root(surface, spring, this, from, start, g_start, low, high, found, &
+        alone)
         class(law), intent(in) :: surface
         class(unloading), intent(in) :: spring
         type(load), intent(in) :: this
@@ -129,6 +130,7 @@ contains
         real(wp), intent(in) :: g_start      !! g there [F/L^2]
         real(wp), intent(out) :: low, high   !! the stretch: x on either side of the root
         logical, intent(out) :: found        !! false: no root up to the end of the curve
+        logical, intent(out) :: alone        !! no other root follows
         integer, parameter :: max_stretches = 5000
         type(sliding) :: there
         type(unloaded) :: first, last
@@ -139,6 +141,7 @@ contains
         first = start
         g_low = g_start
         found = .false.
+        alone = .false.
         width = spring%x_end - low
         do stretch = 1, max_stretches
             high = min(low + width, spring%x_end)
@@ -152,9 +155,10 @@ contains
                 g_low = g_high
                 width = 2.0_wp * width
             else
-                found = (g_low > 0.0_wp .and. .not. rise > 0.0_wp) &   ! down through zero
-                    .or. (g_low <= 0.0_wp .and. g_high > 0.0_wp) &     ! up through zero
-                    .or. width <= epsilon(width) * high                ! touches zero
+                found = g_low > 0.0_wp .and. .not. rise > 0.0_wp   ! down through zero
+                alone = found .and. high >= spring%x_end
+                found = found .or. (g_low <= 0.0_wp .and. g_high > 0.0_wp) &   ! up through zero
+                    .or. width <= epsilon(width) * high            ! touches zero
                 if (found) return
                 width = 0.25_wp * width
             end if
