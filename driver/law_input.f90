@@ -2,10 +2,11 @@
 !> (docs/laws.md).
 module law_input
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_update, law_coulomb, law_rate_state, &
-        law_slip_weakening, law_static_kinetic, law_subloading, scheme_backward_euler, &
-        scheme_exact_rate, statev_size, u_cotangent, u_logarithm, u_reciprocal
-    use namelist_input, only : above, at_least, namelist_file
+    use friction_mod, only : direction_associated, direction_radial, friction_message, &
+        friction_update, largest_mu_ratio, law_coulomb, law_rate_state, law_slip_weakening, &
+        law_static_kinetic, law_subloading, scheme_backward_euler, scheme_exact_rate, &
+        statev_size, u_cotangent, u_logarithm, u_reciprocal
+    use namelist_input, only : above, at_least, between, namelist_file
     implicit none
     private
 
@@ -22,8 +23,8 @@ contains
         character(len=*), parameter :: names(5) = ['subloading    ', 'coulomb       ', &
             'static_kinetic', 'rate_and_state', 'slip_weakening']
         character(len=:), allocatable :: law
-        real(dp) :: alpha_n, alpha_t, tau_max
-        real(dp), allocatable :: own(:)
+        real(dp) :: alpha_n, alpha_t
+        real(dp), allocatable :: own(:), options(:)
         integer :: faults_before, number
 
         faults_before = size(file%faults)
@@ -47,10 +48,28 @@ contains
             number = law_subloading
             call read_subloading(file, own)
         end select
-        call file%get_real(group, 'tau_max', tau_max, at_least(0.0_dp), default=0.0_dp)
-        props = [real(number, dp), alpha_n, alpha_t, own, tau_max]
+        call read_options(file, options)
+        props = [real(number, dp), alpha_n, alpha_t, own, options]
         if (size(file%faults) == faults_before) call try_props(file, props)
     end subroutine read_friction
+
+    !> Options that every law has: shear cap, orthotropy.
+    subroutine read_options(file, options)
+        type(namelist_file), intent(inout) :: file
+        real(dp), allocatable, intent(out) :: options(:)
+        character(len=:), allocatable :: direction
+        real(dp) :: tau_max, mu_ratio
+        integer :: number
+
+        call file%get_real(group, 'tau_max', tau_max, at_least(0.0_dp), default=0.0_dp)
+        call file%get_real(group, 'mu_ratio', mu_ratio, between(1.0_dp / largest_mu_ratio, &
+            largest_mu_ratio), default=1.0_dp)
+        call file%get_choice(group, 'direction', direction, ['associated', 'radial    '], &
+            default='associated')
+        number = direction_associated
+        if (direction == 'radial') number = direction_radial
+        options = [tau_max, mu_ratio, real(number, dp)]
+    end subroutine read_options
 
     pure function is_subloading(props) result(yes)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine

@@ -23,7 +23,8 @@ enum friction_status {
     FRICTION_NO_CONVERGENCE = -6,  /* no equilibrium found */
     FRICTION_BAD_NORMAL = -7,      /* the normal is not a unit vector */
     FRICTION_NULL_POINTER = -8,    /* a pointer argument is NULL */
-    FRICTION_ZERO_TIME_INCREMENT = -9   /* the law depends on the slip rate and needs dtime > 0 */
+    FRICTION_ZERO_TIME_INCREMENT = -9,  /* the law depends on the slip rate and needs dtime > 0 */
+    FRICTION_BAD_AXIS = -10        /* orthotropic friction where the axes of the interface are unknown */
 };
 
 /* Friction update of one contact point.
@@ -32,7 +33,7 @@ enum friction_status {
  *   dtime     increment of time, >= 0 [T]
  *   nprops    number of material constants
  *   props     number of the law, alpha_n, alpha_t, then its own (docs/laws.md), e.g. of law 1, subloading:
- *             mu_s, mu_k, kappa, xi, m[, mu_0]
+ *             mu_s, mu_k, kappa, xi, m[, mu_0]; options (docs/law_options.md) follow them
  *   nstatv    number of state variables, 8 or more
  *   statev    state at the start in, at the end out; all zero = virgin:
  *             status (0 virgin, 1 stick, 2 slip, 3 open), u_n, u_et1, u_et2, mu, R, slip, dissipated energy

@@ -123,6 +123,7 @@ contains
         if (abs(props(prop_law) - law_subloading) > 0.0_wp) return
         last_option = min(this%nprops, prop_tau_max(law_subloading))
         if (any(abs(props(prop_scheme:last_option)) > 0.0_wp)) return
+        if (friction_is_orthotropic(props)) return
         this%constants(1:7) = props(2:8)
         this%constants(8) = props(4)
         if (this%nprops > 8) this%constants(8) = props(9)

@@ -1,6 +1,7 @@
 !> One contact point through one increment: normal and tangential springs, open, touchdown, stick
 !> and slip, and the consistent tangent (docs/theory.md, sections 2 to 5).
 module friction_contact
+    use friction_anisotropy, only : orthotropy, slide_associated, sliding_way
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, sliding
     use friction_reloading, only : find_reloading, reloading
@@ -44,9 +45,11 @@ contains
 
     !> Traction, consistent tangent and new state of a contact point. Only on a status >= 0 do they
     !> mean anything, and only then are traction and tangent written.
-    pure subroutine contact_update(surface, springs, motion, old, new, traction, tangent, status)
+    pure subroutine contact_update(surface, springs, plane, motion, old, new, traction, tangent, &
+        status)
         class(law), intent(in) :: surface
         type(contact_springs), intent(in) :: springs
+        type(orthotropy), intent(in) :: plane        !! how friction depends on the direction
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old       !! state at the start of the increment
         type(contact_point), intent(out) :: new      !! state at its end
@@ -79,8 +82,8 @@ contains
         q(1) = old%u_et(1) + loaded * motion%du(2)
         q(2) = old%u_et(2) + loaded * motion%du(3)
 
-        call tangential_update(surface, springs%tangential, q, pressure, motion%dt, old, new, tau, &
-            by_q, by_pressure, status)
+        call tangential_update(surface, springs%tangential, plane, q, pressure, motion%dt, old, &
+            new, tau, by_q, by_pressure, status)
         if (status < 0) return
         traction(1) = -pressure
         traction(2) = tau(1)
@@ -123,10 +126,11 @@ contains
 
     !> Stick or slip under pressure: the tangential traction, its derivatives by `q` and by the
     !> pressure.
-    pure subroutine tangential_update(surface, alpha_t, q, pressure, dt, old, new, tau, by_q, &
-        by_pressure, status)
+    pure subroutine tangential_update(surface, alpha_t, plane, q, pressure, dt, old, new, tau, &
+        by_q, by_pressure, status)
         class(law), intent(in) :: surface
         real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
+        type(orthotropy), intent(in) :: plane
         real(wp), intent(in) :: q(2)          !! trial elastic tangential displacement [L]
         real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
         real(wp), intent(in) :: dt            !! increment of time [T]
@@ -136,17 +140,18 @@ contains
         real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
         real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
         integer, intent(out) :: status
-        type(sliding) :: slid
         type(law_state) :: start
         type(reloading) :: reload
-        real(wp) :: distance, strength, inverse, share, t1, t2, coupling, along, across
+        real(wp) :: distance, strength
 
         status = friction_ok
-        distance = sqrt(q(1)**2 + q(2)**2)
+        distance = sqrt(q(1)**2 + (plane%squeeze * q(2))**2)
         call surface%rest(alpha_t * distance, pressure, dt, old%inner, new%inner, strength)
         start = old%inner
-        if (surface%follows_path) then
-            call find_reloading(old%u_et, [q(1), q(2)], strength / alpha_t, pressure, reload)
+        if (surface%follows_path) then   ! in the axes where the ellipse is a circle
+            call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
+                [q(1), plane%squeeze * q(2)], strength / alpha_t, pressure, reload)
+            reload%by_q(2) = plane%squeeze * reload%by_q(2)
             start%r = reload%share * start%r
             strength = reload%share * strength
         end if
@@ -163,46 +168,112 @@ contains
             by_q(1, 2) = 0.0_wp
             by_q(2, 2) = alpha_t
             by_pressure = 0.0_wp
-            return
+        else
+            call slip_update(surface, alpha_t, plane, q, distance, pressure, dt, start, reload, &
+                old, new, tau, by_q, by_pressure, status)
         end if
+    end subroutine tangential_update
 
-        call return_map(surface, alpha_t * distance, alpha_t, pressure, dt, start, slid, status)
+    !> The same where the trial traction is above the strength.
+    pure subroutine slip_update(surface, alpha_t, plane, q, distance, pressure, dt, start, reload, &
+        old, new, tau, by_q, by_pressure, status)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
+        type(orthotropy), intent(in) :: plane
+        real(wp), intent(in) :: q(2)          !! trial elastic tangential displacement [L]
+        real(wp), intent(in) :: distance      !! its equivalent length [L]
+        real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
+        real(wp), intent(in) :: dt            !! increment of time [T]
+        type(law_state), intent(in) :: start  !! internal variables at the start of sliding
+        type(reloading), intent(in) :: reload   !! for a law that follows the path
+        type(contact_point), intent(in) :: old
+        type(contact_point), intent(inout) :: new
+        real(wp), intent(out) :: tau(2)             !! tangential traction [F/L^2]
+        real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
+        real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
+        integer, intent(out) :: status
+        type(sliding) :: slid
+        type(sliding_way) :: way
+        real(wp) :: mean, share, coupling, by_p, pull(2), start_rate
+
+        if (plane%associated) then
+            call slide_associated(surface, alpha_t, plane%squeeze, q, distance, pressure, dt, &
+                start, slid, way, status)
+        else
+            call slide_radially(surface, alpha_t, plane%squeeze, q, distance, pressure, dt, &
+                start, slid, way, status)
+        end if
         if (status < 0) return
-        inverse = 1.0_wp / distance
-        across = slid%resistance * inverse
-        share = across / alpha_t
-        t1 = q(1) * inverse
-        t2 = q(2) * inverse
-        tau(1) = across * q(1)
-        tau(2) = across * q(2)
+
+        ! How the slip's resistance grows with q, and with the pressure.
+        pull(1) = slid%d_slip * way%along(1) + way%turn * way%along(2)
+        pull(2) = slid%d_slip * way%along(2) - way%turn * way%along(1)
+        by_p = slid%d_pressure
+        mean = slid%resistance
+        if (surface%follows_path) then   ! the traction at the start of sliding counts, too
+            start_rate = old%inner%r * surface%start_rate(pressure, start, slid%state)
+            pull = pull + start_rate * reload%by_q
+            by_p = by_p + start_rate * reload%by_pressure
+            mean = 0.5_wp * (mean + alpha_t * reload%share * hypot(old%u_et(1), &
+                plane%squeeze * old%u_et(2)))
+        end if
+        coupling = alpha_t / max(way%stiffness + slid%d_slip, epsilon(alpha_t) * way%stiffness)
+
+        tau(1) = way%tau(1)
+        tau(2) = way%tau(2)
         new%phase = point_slip
         new%inner = slid%state
-        new%u_et(1) = share * q(1)
-        new%u_et(2) = share * q(2)
+        share = 1.0_wp / alpha_t
+        new%u_et(1) = share * tau(1)
+        new%u_et(2) = share * tau(2)
         new%slip = old%slip + slid%slip
-        new%dissipation = old%dissipation + slid%resistance * slid%slip
+        new%dissipation = old%dissipation + mean * slid%slip * way%lever
+        by_pressure(1) = coupling * by_p * way%answer(1)
+        by_pressure(2) = coupling * by_p * way%answer(2)
+        by_q(1, 1) = coupling * way%answer(1) * pull(1) + way%across * way%along(2)**2
+        by_q(2, 1) = coupling * way%answer(2) * pull(1) - way%across * way%along(1) * way%along(2)
+        by_q(1, 2) = coupling * way%answer(1) * pull(2) - way%across * way%along(1) * way%along(2)
+        by_q(2, 2) = coupling * way%answer(2) * pull(2) + way%across * way%along(1)**2
+    end subroutine slip_update
 
-        ! `along` the sliding direction the slip yields to the trial, `across` it turns alone.
-        coupling = alpha_t / max(alpha_t + slid%d_slip, epsilon(alpha_t) * alpha_t)
-        along = coupling * slid%d_slip
-        by_pressure(1) = coupling * slid%d_pressure * t1
-        by_pressure(2) = coupling * slid%d_pressure * t2
-        by_q(1, 1) = along * t1**2 + across * t2**2
-        by_q(2, 1) = (along - across) * t1 * t2
-        by_q(1, 2) = by_q(2, 1)
-        by_q(2, 2) = along * t2**2 + across * t1**2
-        if (.not. surface%follows_path) return
+    !> Along the trial traction, as every isotropic surface slides (squeeze = 1), and an orthotropic
+    !> one by option. How much of the traction counts depends on the direction alone.
+    pure subroutine slide_radially(surface, alpha_t, squeeze, q, distance, pressure, dt, start, &
+        slid, way, status)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: alpha_t         !! tangential stiffness [F/L^3]
+        real(wp), intent(in) :: squeeze         !! [-]
+        real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
+        real(wp), intent(in) :: distance        !! its equivalent length [L]
+        real(wp), intent(in) :: pressure        !! > 0 [F/L^2]
+        real(wp), intent(in) :: dt              !! increment of time [T]
+        type(law_state), intent(in) :: start    !! at the start of sliding
+        type(sliding), intent(out) :: slid
+        type(sliding_way), intent(out) :: way
+        integer, intent(out) :: status          !! ok, snap back, or no convergence
+        real(wp) :: inverse
 
-        ! The traction at the start of sliding counts, too: in the energy, and in the tangent.
-        strength = alpha_t * reload%share * hypot(old%u_et(1), old%u_et(2))
-        new%dissipation = old%dissipation + 0.5_wp * (strength + slid%resistance) * slid%slip
-        coupling = coupling * old%inner%r * surface%start_rate(pressure, start, slid%state)
-        by_pressure(1) = by_pressure(1) + coupling * reload%by_pressure * t1
-        by_pressure(2) = by_pressure(2) + coupling * reload%by_pressure * t2
-        by_q(1, 1) = by_q(1, 1) + coupling * t1 * reload%by_q(1)
-        by_q(2, 1) = by_q(2, 1) + coupling * t2 * reload%by_q(1)
-        by_q(1, 2) = by_q(1, 2) + coupling * t1 * reload%by_q(2)
-        by_q(2, 2) = by_q(2, 2) + coupling * t2 * reload%by_q(2)
-    end subroutine tangential_update
+        inverse = 1.0_wp / distance
+        way%stiffness = alpha_t
+        way%lever = 1.0_wp
+        way%turn = 0.0_wp
+        if (abs(squeeze - 1.0_wp) > 0.0_wp) then
+            inverse = 1.0_wp / hypot(q(1), q(2))
+            way%stiffness = alpha_t * distance * inverse
+            way%lever = alpha_t / way%stiffness
+            way%turn = (q(1) * inverse) * (q(2) * inverse) * (squeeze**2 - 1.0_wp) * way%lever
+        end if
+        call return_map(surface, alpha_t * distance, way%stiffness, pressure, dt, start, slid, &
+            status)
+        if (status < 0) return
+        way%across = slid%resistance * way%lever * inverse
+        way%turn = way%turn * way%across
+        way%tau(1) = way%across * q(1)
+        way%tau(2) = way%across * q(2)
+        way%along(1) = q(1) * inverse
+        way%along(2) = q(2) * inverse
+        way%answer(1) = way%along(1)
+        way%answer(2) = way%along(2)
+    end subroutine slide_radially
 
 end module friction_contact

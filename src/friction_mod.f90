@@ -6,14 +6,15 @@
 !> negative `status` nothing else is touched.
 module friction_mod
     use, intrinsic :: iso_fortran_env, only : int64
+    use friction_anisotropy, only : isotropic, largest_mu_ratio, orthotropy, read_orthotropy
     use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
         point_open, point_slip, point_stick, point_virgin
     use friction_kinds, only : wp
     use friction_law, only : law
-    use friction_status, only : friction_bad_increment, friction_bad_law, friction_bad_normal, &
-        friction_bad_property, friction_bad_size, friction_bad_state, friction_message, &
-        friction_no_convergence, friction_null_pointer, friction_ok, friction_snap_back, &
-        friction_zero_time_increment
+    use friction_status, only : friction_bad_axis, friction_bad_increment, friction_bad_law, &
+        friction_bad_normal, friction_bad_property, friction_bad_size, friction_bad_state, &
+        friction_message, friction_no_convergence, friction_null_pointer, friction_ok, &
+        friction_snap_back, friction_zero_time_increment
     use friction_coulomb_law, only : read_coulomb_law, coulomb_law
     use friction_static_kinetic_law, only : read_static_kinetic_law, static_kinetic_law
     use friction_rate_state_law, only : read_rate_state_law, rate_state_law
@@ -27,9 +28,9 @@ module friction_mod
     private
 
     public :: friction_update, friction_update_frame, friction_tangential, friction_update_batch, &
-        friction_message, friction_version
+        friction_is_orthotropic, friction_message, friction_version
     public :: update_arrays, update_arrays_batch   ! for the C interface
-    public :: friction_bad_increment, friction_bad_law, friction_bad_normal, &
+    public :: friction_bad_axis, friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
         friction_null_pointer, friction_ok, friction_snap_back, friction_zero_time_increment
 
@@ -56,6 +57,15 @@ module friction_mod
 
     !> Place of the shear cap, after the own constants of each law; may be left out, 0 means none.
     integer, parameter :: prop_tau_max(5) = [12, 5, 7, 11, 7]
+
+    !> The places after it, which may be left out, are for orthotropic friction: mu_2/mu_1, and the
+    !> direction of sliding.
+    integer, parameter :: ratio_after_tau_max = 1
+
+    !> Direction in which an orthotropic surface slides.
+    integer, parameter, public :: direction_associated = 0   !! normal to the surface of strength
+    integer, parameter, public :: direction_radial = 1       !! along the trial traction
+    public :: largest_mu_ratio
 
     !> Places in `statev`.
     integer, parameter, public :: statev_size = 8          !! least size
@@ -160,9 +170,10 @@ contains
     !>
     !> Here statev(2:) holds the vector `u_n n + u_et` in the caller's frame. A host that rotates
     !> the frame or the normal during an increment rotates these components as it rotates any vector
-    !> of its own.
+    !> of its own. Orthotropic friction in space needs its axis 1, too: the part of `axis` at right
+    !> angles to the normal. Axis 2 is normal x axis 1.
     pure subroutine friction_update_frame(du, normal, dtime, props, statev, traction, tangent, &
-        status)
+        status, axis)
         real(wp), intent(in) :: du(:)   !! increment of relative displacement, slave seen from
                                         !! master;
                                                   !! size 2 or 3, finite [L]
@@ -174,7 +185,10 @@ contains
         real(wp), intent(inout) :: traction(:)  !! T at the end of the increment; size of du [F/L^2]
         real(wp), intent(inout) :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of du squared
                                                    !! [F/L^3]
-        integer, intent(out) :: status            !! a named code; also `friction_bad_normal`
+        integer, intent(out) :: status            !! a named code; also `friction_bad_normal`,
+                                                  !! `friction_bad_axis`
+        real(wp), intent(in), optional :: axis(:)   !! tangential axis 1, of any length; size of du;
+                                                    !! isotropic friction does not need it
         real(wp), parameter :: unit_tolerance = 1.0e-6_wp   !! a normal in single precision still
                                                             !! passes
         real(wp) :: axes(3, 3), state(statev_size)
@@ -198,6 +212,12 @@ contains
         if (.not. all_usable(statev_size, statev)) return
 
         axes = contact_axes(normal)
+        if (n == 3 .and. friction_is_orthotropic(props)) then
+            status = friction_bad_axis
+            if (.not. present(axis)) return
+            call turn_axes(axis, axes, status)
+            if (status < 0) return
+        end if
         motion%du(3) = 0.0_wp
         motion%du(1:n) = matmul(du, axes(1:n, 1:n))
         motion%dt = dtime
@@ -216,6 +236,24 @@ contains
         tangent = matmul(axes(1:n, 1:n), matmul(contact_tangent(1:n, 1:n), &
             transpose(axes(1:n, 1:n))))
     end subroutine friction_update_frame
+
+    !> Do these constants tell one tangential axis from another?
+    pure function friction_is_orthotropic(props) result(orthotropic)
+        real(wp), intent(in) :: props(:)   !! material constants, as in `friction_update`
+        logical :: orthotropic             !! false also for constants that are refused
+        integer :: number, place
+        real(wp) :: ratio
+
+        orthotropic = .false.
+        if (size(props) < first_own_prop) return
+        if (.not. all_usable(size(props), props)) return
+        number = whole_number(props(prop_law))
+        if (number < 1 .or. number > size(prop_tau_max)) return
+        place = prop_tau_max(number) + ratio_after_tau_max
+        if (size(props) < place) return
+        ratio = props(place)
+        orthotropic = ratio > 0.0_wp .and. abs(ratio - 1.0_wp) > 0.0_wp
+    end function friction_is_orthotropic
 
     !> Tangential part alone, for hosts that hand in the pressure.
     !>
@@ -278,7 +316,8 @@ contains
         type(slip_weakening_law), target :: slip_weakening
         type(capped_law), target :: capped
         class(law), pointer :: surface
-        integer :: number, scheme
+        type(orthotropy) :: plane
+        integer :: number, scheme, place
         integer(int64) :: seen
 
         status = friction_bad_size
@@ -350,13 +389,21 @@ contains
                 surface => capped
             end if
         end if
-        call update_point(surface, props, motion, n_tangential, statev, traction, tangent, status)
+        plane = isotropic
+        place = prop_tau_max(number) + ratio_after_tau_max
+        if (nprops >= place) then
+            call read_orthotropy(nprops - place + 1, props(place), plane, status)
+            if (status < 0) return
+        end if
+        call update_point(surface, plane, props, motion, n_tangential, statev, traction, tangent, &
+            status)
     end subroutine advance
 
     !> One point under a law: unpacks `statev`, updates, and packs it again.
-    pure subroutine update_point(surface, props, motion, n_tangential, statev, traction, tangent, &
-        status)
+    pure subroutine update_point(surface, plane, props, motion, n_tangential, statev, traction, &
+        tangent, status)
         class(law), intent(in) :: surface
+        type(orthotropy), intent(in) :: plane
         real(wp), intent(in) :: props(prop_alpha_t)
         type(contact_motion), intent(in) :: motion
         integer, intent(in) :: n_tangential   !! 1 or 2 tangential components
@@ -392,7 +439,7 @@ contains
         end if
 
         call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
-            tangential=props(prop_alpha_t)), motion, old, new, traction, tangent, status)
+            tangential=props(prop_alpha_t)), plane, motion, old, new, traction, tangent, status)
         if (status < 0) return
         statev(statev_status) = new%phase
         statev(statev_u_n) = new%u_n
@@ -479,5 +526,26 @@ contains
             axes(:, 3) = [b, sign_z + n(2)**2 * a, -n(2)]
         end if
     end function contact_axes
+
+    !> Turns the tangential axes in their plane, so that the first is along `axis`.
+    pure subroutine turn_axes(axis, axes, status)
+        real(wp), intent(in) :: axis(:)
+        real(wp), intent(inout) :: axes(3, 3)   !! as columns, the first is the normal
+        integer, intent(out) :: status          !! ok, bad size, or bad axis
+        real(wp), parameter :: least = 1.0e-6_wp   !! sine of its angle to the normal
+        real(wp) :: part(2), old(3, 2)
+
+        status = friction_bad_size
+        if (size(axis) /= 3) return
+        status = friction_bad_axis
+        if (.not. all_usable(3, axis)) return
+        old = axes(:, 2:3)
+        part = matmul(axis, old)
+        if (.not. norm2(part) > least * norm2(axis)) return
+        part = part / norm2(part)
+        axes(:, 2) = part(1) * old(:, 1) + part(2) * old(:, 2)
+        axes(:, 3) = part(1) * old(:, 2) - part(2) * old(:, 1)
+        status = friction_ok
+    end subroutine turn_axes
 
 end module friction_mod

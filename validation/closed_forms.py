@@ -19,6 +19,7 @@ changes. Where the closed form is of a rigid contact the tangential spring is ma
     rate_and_state_transient(library, report)
     subloading_rest_and_steady(library, report)
     similarity_ratio(library, report)
+    orthotropic(library, report)
     draw(library, report)
 
 
@@ -178,8 +179,56 @@ def similarity_ratio(library, report):
                  (li(ratio[inside]) - li(ratio[first - 1]) + m * (slip[inside] - slip[first - 1])) / (m * slip[inside]), 1e-10)
 
 
+ASSOCIATED, RADIAL = 0.0, 1.0
+MU_RATIO = 0.5
+
+
+def steady_traction(mu, direction, angles):
+    """Of sliding at angles to axis 1 of a surface with two coefficients: components along the axes."""
+    c, s = numpy.cos(angles), numpy.sin(angles)
+    if direction == ASSOCIATED:
+        return mu * PRESSURE * numpy.array([c, MU_RATIO**2 * s]) / numpy.hypot(c, MU_RATIO * s)
+    return mu * PRESSURE * numpy.array([c, s]) / numpy.hypot(c, s / MU_RATIO)
+
+
+def slide_at(point, angle, rate, dt=2.0, steps=100):
+    for _ in range(steps):
+        point.update(0.0, rate * dt * numpy.cos(angle), rate * dt * numpy.sin(angle), dt)
+    return point.traction[1:3]
+
+
+def orthotropic(library, report):
+    angles = numpy.radians(numpy.arange(0, 360, 15))
+    c, rate = SUBLOADING_CONSTANTS, 0.05
+    steady = (c['kappa'] * rate * c['mu_k'] + c['xi'] * c['mu_s']) / (c['kappa'] * rate + c['xi'])
+    sources = {ASSOCIATED: '`mu p (v_1, rho^2 v_2)/sqrt(v_1^2 + rho^2 v_2^2)`, theory.md 9',
+               RADIAL: '`mu p v/sqrt(v_1^2 + (v_2/rho)^2)`, theory.md 9'}
+    for direction, name in ((ASSOCIATED, 'associated'), (RADIAL, 'radial')):
+        options = (0.0, MU_RATIO, direction)   # no shear cap
+        laws = {'Coulomb': (0.3, (COULOMB, 1e3, 1e3, 0.3, *options)),
+                'subloading': (steady, (SUBLOADING, 1e3, 1e3, *c.values(), c['mu_s'], 0.0, 0.0, *options))}
+        for law, (mu, props) in laws.items():
+            computed = [list(slide_at(library.point(*props).pressed(PRESSURE), angle, rate)) for angle in angles]
+            for i, curves in enumerate(zip(steady_traction(mu, direction, angles), numpy.transpose(computed)), 1):
+                report.curve(f'{law}, `mu_2 = mu_1/2`, {name}: steady sliding at 0 to 345 degrees, traction along axis {i}',
+                             sources[direction], *curves, 1e-11)
+
+
+def draw_directions(library, axis):
+    angles = numpy.radians(numpy.linspace(0, 90, 10))
+    fine = numpy.radians(numpy.linspace(0, 90, 200))
+    for direction, name in ((ASSOCIATED, 'associated'), (RADIAL, 'radial')):
+        tractions = [list(slide_at(library.point(COULOMB, 1e3, 1e3, 0.3, 0.0, MU_RATIO, direction).pressed(PRESSURE), angle, 0.05))
+                     for angle in angles]
+        expected = steady_traction(0.3, direction, fine)
+        axis.plot(numpy.degrees(fine), numpy.degrees(numpy.arctan2(expected[1], expected[0])), 'k-')
+        axis.plot(numpy.degrees(angles), [numpy.degrees(numpy.arctan2(second, first)) for first, second in tractions], 'o',
+                  color=f'C{int(direction) + 1}', label=name)
+    axis.set(xlabel='direction of sliding', ylabel='direction of the traction', title='mu_2 = mu_1/2, degrees to axis 1')
+
+
 def draw(library, report):
-    figure, axes = plot.subplots(1, 3, figsize=(12, 3.6))
+    figure, axes = plot.subplots(1, 4, figsize=(16, 3.6))
     rates = numpy.logspace(-2, 1.5, 15)
     computed = []
     for rate in rates:
@@ -199,6 +248,7 @@ def draw(library, report):
     axes[2].plot(-li(grid) / 200.0, grid, 'k-', label='li(R) = -m s')
     axes[2].plot(slip[::6], ratio[::6], 'o', color='C1', label='library')
     axes[2].set(xlabel='slip', ylabel='R', xlim=(0, 0.02), title='subloading, first loading')
+    draw_directions(library, axes[3])
     for axis in axes:
         axis.legend()
         axis.grid(alpha=0.3)

@@ -9,7 +9,7 @@ from test_program import PROGRAM, Program, namelist
 
 FIXED = namelist({('time', 't_end'): '40', ('time', 'dt'): '2e-4', ('output', 'interval'): '10',
                   ('output', 'checkpoint'): '0.02'})
-ADAPTIVE = namelist({('time', 't_end'): '80', ('time', 'rtol'): '1e-6', ('output', 'interval'): '3',
+ADAPTIVE = namelist({('time', 't_end'): '400', ('time', 'rtol'): '1e-7', ('output', 'interval'): '3',
                      ('drive', 'velocity'): '1, 0.5, 2', ('drive', 'duration'): '31.7, 20, 100',
                      ('drive', 'normal_amplitude'): '1', ('drive', 'normal_frequency'): '0.3',
                      ('output', 'checkpoint'): '0.02'}, [('time', 'dt')])

@@ -99,6 +99,17 @@ class GoodInput(Point):
         self.assertAlmostEqual(rows[-1]['mu'], steady, delta=1e-9)
         self.assertAlmostEqual(rows[-1]['t_t1'], 10 * steady, delta=1e-8)
 
+    def test_orthotropic_sliding_settles_at_the_closed_form(self):
+        speed, ratio = (0.16, 0.12), 0.5
+        steady = 10 * (10 * 0.2 * 0.2 + 0.1 * 0.4) / (10 * 0.2 + 0.1)
+        for direction, expected in (('associated', (speed[0], ratio**2 * speed[1])), ('radial', speed)):
+            text = namelist({'ndir': '3', 'duration': '1, 100', 'steps': '1, 4000', 'target_t1': '0, 16',
+                             'target_t2': '0, 12'})
+            last = self.followed(text.replace(' m=', f" mu_ratio={ratio}, direction='{direction}', m="))[-1]
+            scale = steady / (expected[0]**2 + (expected[1] / ratio)**2)**0.5
+            for key, component in zip(('t_t1', 't_t2'), expected):
+                self.assertAlmostEqual(last[key], scale * component, delta=1e-8)
+
     def test_hold_heals_as_the_closed_form_says(self):
         rows = self.followed(namelist({'duration': '1, 0.1, 5', 'steps': '1, 100, 2000',
                                        'target_t1': '0, 0.1, 0.1'}))

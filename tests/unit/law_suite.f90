@@ -12,7 +12,7 @@ module law_suite
     public :: exact_tangent, law_case, law_point, laws, random_law_point
 
     integer, parameter :: qp = real128
-    integer, parameter :: most_own = 9
+    integer, parameter :: most_own = 11
 
     type :: law_case
         character(len=26) :: name
@@ -20,7 +20,8 @@ module law_suite
         integer :: n_own             !! number of own constants, all with their optional ones
         real(dp) :: own(most_own)    !! for N, mm, s
         character(len=most_own) :: spread   !! how a draw varies each: d over decades, m all by one
-                                            !! factor up to 1 (friction coefficients), - not at all
+                                            !! factor up to 1 (friction coefficients), o over
+                                            !! fewer decades (mu_2/mu_1), - not at all
         logical :: needs_time        !! refuses a tangential load without time
     end type law_case
 
@@ -31,8 +32,9 @@ module law_suite
     real(dp), parameter :: rate_state(5) = [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, mu]
     real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
     real(dp), parameter :: unused(most_own) = 0.0_dp
+    real(dp), parameter :: associated(2) = [0.6_dp, 0.0_dp], radial(2) = [0.6_dp, 1.0_dp]
 
-    type(law_case), parameter :: laws(15) = [ &
+    type(law_case), parameter :: laws(25) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
         [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
@@ -50,21 +52,42 @@ module law_suite
         law_case('subloading, reciprocal', law_subloading, 8, &
         [subloading, 0.0_dp, 2.0_dp, unused(9:)], 'mmdddm--', .false.), &
         law_case('subloading, capped', law_subloading, 9, &
-        [subloading, 0.0_dp, 0.0_dp, tau_max], 'mmdddm--d', .false.), &
+        [subloading, 0.0_dp, 0.0_dp, tau_max, unused(10:)], 'mmdddm--d', .false.), &
         law_case('subloading, exact, capped', law_subloading, 9, &
-        [subloading, 1.0_dp, 0.0_dp, tau_max], 'mmdddm--d', .false.), &
+        [subloading, 1.0_dp, 0.0_dp, tau_max, unused(10:)], 'mmdddm--d', .false.), &
         law_case('Coulomb, capped', law_coulomb, 2, [mu, tau_max, unused(3:)], 'md', .false.), &
         law_case('static-kinetic, capped', law_static_kinetic, 4, &
         [static_kinetic, tau_max, unused(5:)], 'mmdd', .true.), &
         law_case('rate-and-state, capped', law_rate_state, 8, &
         [rate_state, 0.0_dp, theta_0, tau_max, unused(9:)], 'mmddm-dd', .true.), &
         law_case('slip-weakening, capped', law_slip_weakening, 4, &
-        [slip_weakening, tau_max, unused(5:)], 'mmdd', .false.)]
+        [slip_weakening, tau_max, unused(5:)], 'mmdd', .false.), &
+        law_case('Coulomb, associated', law_coulomb, 4, [mu, 0.0_dp, associated, unused(5:)], &
+        'm-o-', .false.), &
+        law_case('Coulomb, radial', law_coulomb, 4, [mu, 0.0_dp, radial, unused(5:)], 'm-o-', &
+        .false.), &
+        law_case('subloading, associated', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, &
+        0.0_dp, associated], 'mmdddm---o-', .false.), &
+        law_case('subloading, radial', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, 0.0_dp, &
+        radial], 'mmdddm---o-', .false.), &
+        law_case('exact rate, associated', law_subloading, 11, [subloading, 1.0_dp, 0.0_dp, &
+        0.0_dp, associated], 'mmdddm---o-', .false.), &
+        law_case('exact rate, radial', law_subloading, 11, [subloading, 1.0_dp, 0.0_dp, 0.0_dp, &
+        radial], 'mmdddm---o-', .false.), &
+        law_case('associated, capped', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, tau_max, &
+        associated], 'mmdddm--do-', .false.), &
+        law_case('static-kinetic, associated', law_static_kinetic, 6, [static_kinetic, 0.0_dp, &
+        associated, unused(7:)], 'mmd-o-', .true.), &
+        law_case('rate-and-state, associated', law_rate_state, 10, [rate_state, 0.0_dp, theta_0, &
+        0.0_dp, associated, unused(11:)], 'mmddm-d-o-', .true.), &
+        law_case('slip-weakening, associated', law_slip_weakening, 6, [slip_weakening, 0.0_dp, &
+        associated, unused(7:)], 'mmd-o-', .false.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point
         real(dp), allocatable :: props(:)
         real(dp) :: statev(8), du(3), dt
+        real(dp) :: ratio = 1.0_dp   !! mu_2/mu_1
         real(dp) :: reach   !! slips and elastic displacements are of this size [L]
     end type law_point
 
@@ -88,6 +111,10 @@ contains
             p%props(3 + i) = this%own(i)
             if (this%spread(i:i) == 'm') p%props(3 + i) = factor * this%own(i)
             if (this%spread(i:i) == 'd') p%props(3 + i) = this%own(i) * 10.0_dp**draw(-half, half)
+            if (this%spread(i:i) == 'o') then
+                p%ratio = this%own(i) * 10.0_dp**(0.7_dp * draw(-half, half))
+                p%props(3 + i) = p%ratio
+            end if
         end do
         pressure = 10.0_dp * 10.0_dp**draw(-half, half)
         p%reach = 0.4_dp * pressure / p%props(3)

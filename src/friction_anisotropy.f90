@@ -1,0 +1,163 @@
+!> Friction with two coefficients, along two axes of the interface (docs/theory.md, section 9).
+!>
+!> Surfaces of equal strength are ellipses: with `squeeze` = mu_1/mu_2, the laws see the
+!> equivalent traction
+!>
+!>     T_eq = sqrt(T_1^2 + (squeeze T_2)^2) = resistance
+!>
+!> and the slip's Euclidean length. The surface slides along the normal of the ellipse through the
+!> traction at the end of the increment (`slide_associated`) or, by option, along the trial traction
+!> as an isotropic one does (module `friction_contact`).
+module friction_anisotropy
+    use friction_kinds, only : wp
+    use friction_law, only : law, law_state, sliding
+    use friction_return_map, only : return_along, unloaded, unloading
+    use friction_status, only : friction_bad_property, friction_ok
+    implicit none
+    private
+
+    public :: orthotropy, isotropic, read_orthotropy, slide_associated, sliding_way
+
+    real(wp), parameter, public :: largest_mu_ratio = 1.0e3_wp   !! of the two coefficients [-]
+
+    !> How friction depends on the direction.
+    type :: orthotropy
+        real(wp) :: squeeze      !! mu_1/mu_2: traction along axis 2 counts that much more [-]
+        logical :: associated    !! squeeze /= 1, and the surface slides normal to its ellipse
+    end type orthotropy
+
+    type(orthotropy), parameter :: isotropic = orthotropy(squeeze=1.0_wp, associated=.false.)
+
+    !> How the traction of a sliding surface answers a change of the trial displacement q.
+    type :: sliding_way
+        real(wp) :: tau(2)       !! traction [F/L^2]
+        real(wp) :: along(2)     !! unit vector of the slip [-]
+        real(wp) :: answer(2)    !! change of the traction when it grows; along . answer = 1 [-]
+        real(wp) :: across       !! stiffness against q at right angles to the slip [F/L^3]
+        real(wp) :: turn         !! fall of T_eq with such q, where the slip is fixed [F/L^3]
+        real(wp) :: stiffness    !! fall of T_eq with slip, where q is fixed [F/L^3]
+        real(wp) :: lever        !! work of the traction over slip and T_eq [-]
+    end type sliding_way
+
+    !> The spring of an associated surface. Each component of the traction relaxes at a rate of its
+    !> own,
+    !>
+    !>     T_i = alpha_t q_i (1 - x) e_i,   e_i = 1/(1 + (r_i - 1) x),   slip_i = q_i r_i x e_i
+    !>
+    !> where r_i >= 1 is that rate, over the slower one's. T_eq is convex in the slip.
+    type, extends(unloading) :: ellipse_spring
+        real(wp) :: alpha_t      !! tangential stiffness [F/L^3]
+        real(wp) :: q(2)         !! trial elastic displacement [L]
+        real(wp) :: squeeze      !! [-]
+        real(wp) :: rates(2)     !! r_i [-]
+    contains
+        procedure :: at => on_an_ellipse
+    end type ellipse_spring
+
+    !> Where that spring is at some x.
+    type :: relaxation
+        real(wp) :: e(2)         !! e_i [-]
+        real(wp) :: q(2)         !! e_i q_i, along the traction [L]
+        real(wp) :: equivalent   !! its equivalent length [L]
+        real(wp) :: along(2)     !! unit vector of the slip [-]
+        real(wp) :: length       !! slip/x [L]
+        real(wp) :: reach        !! length of the ellipse's gradient, -dT_eq/d(slip)/alpha_t [-]
+        real(wp) :: mean         !! of e_i, weighted by the squares of `along` [-]
+    end type relaxation
+
+contains
+
+    !> From the constants mu_2/mu_1 (0 stands for 1) and, if given, the direction of sliding.
+    pure subroutine read_orthotropy(n, constants, plane, status)
+        integer, intent(in) :: n                   !! number of constants, 1 or more
+        real(wp), intent(in) :: constants(n)       !! finite
+        type(orthotropy), intent(out) :: plane     !! if the status is ok
+        integer, intent(out) :: status             !! ok or bad property
+        real(wp) :: ratio, direction
+
+        plane = isotropic
+        ratio = constants(1)
+        direction = 0.0_wp
+        if (n > 1) direction = constants(2)
+        status = friction_bad_property
+        if (abs(direction) > 0.0_wp .and. abs(direction - 1.0_wp) > 0.0_wp) return
+        if (abs(ratio) > 0.0_wp) then
+            if (ratio < 1.0_wp / largest_mu_ratio .or. ratio > largest_mu_ratio) return
+            plane%squeeze = 1.0_wp / ratio
+            plane%associated = abs(ratio - 1.0_wp) > 0.0_wp .and. .not. direction > 0.0_wp
+        end if
+        status = friction_ok
+    end subroutine read_orthotropy
+
+    !> Along the normal of the ellipse through the traction at the end.
+    pure subroutine slide_associated(surface, alpha_t, squeeze, q, distance, pressure, dt, start, &
+        slid, way, status)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: alpha_t         !! tangential stiffness [F/L^3]
+        real(wp), intent(in) :: squeeze         !! [-]
+        real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
+        real(wp), intent(in) :: distance        !! its equivalent length [L]
+        real(wp), intent(in) :: pressure        !! > 0 [F/L^2]
+        real(wp), intent(in) :: dt              !! increment of time [T]
+        type(law_state), intent(in) :: start    !! at the start of sliding
+        type(sliding), intent(out) :: slid
+        type(sliding_way), intent(out) :: way
+        integer, intent(out) :: status          !! ok, snap back, or no convergence
+        type(ellipse_spring) :: spring
+        type(relaxation) :: now
+        real(wp) :: x
+
+        spring%trial = alpha_t * distance
+        spring%x_end = 1.0_wp
+        spring%alpha_t = alpha_t
+        spring%q = q
+        spring%squeeze = squeeze
+        spring%rates(1) = max(1.0_wp, 1.0_wp / squeeze**2)
+        spring%rates(2) = max(squeeze**2, 1.0_wp)
+        now = relaxed(spring, 0.0_wp)
+        spring%stiffness = alpha_t * now%reach
+        call return_along(surface, spring, pressure, dt, start, slid, x, status)
+        if (status < 0) return
+
+        ! The law's traction is exact, the spring's a difference.
+        now = relaxed(spring, x)
+        way%tau = (slid%resistance / now%equivalent) * now%q
+        way%along = now%along
+        way%answer = now%e * now%along / now%mean
+        way%across = (slid%resistance / now%equivalent) * now%e(1) * now%e(2) / now%mean
+        way%turn = 0.0_wp
+        way%stiffness = alpha_t * now%reach
+        way%lever = 1.0_wp / now%reach
+    end subroutine slide_associated
+
+    pure subroutine on_an_ellipse(self, x, there)
+        class(ellipse_spring), intent(in) :: self
+        real(wp), intent(in) :: x   !! 0 to 1 [-]
+        type(unloaded), intent(out) :: there
+        type(relaxation) :: now
+
+        now = relaxed(self, x)
+        there%slip = x * now%length
+        there%traction = self%alpha_t * (1.0_wp - x) * now%equivalent
+        there%stiffness = self%alpha_t * now%reach
+        there%rate = now%length * now%mean
+    end subroutine on_an_ellipse
+
+    !> The spring at x, but for the factors x and 1 - x: nothing here vanishes at either end.
+    pure function relaxed(spring, x) result(now)
+        class(ellipse_spring), intent(in) :: spring
+        real(wp), intent(in) :: x   !! 0 to 1 [-]
+        type(relaxation) :: now
+        real(wp) :: slip(2)
+
+        now%e = 1.0_wp / (1.0_wp + (spring%rates - 1.0_wp) * x)
+        now%q = now%e * spring%q
+        now%equivalent = hypot(now%q(1), spring%squeeze * now%q(2))
+        slip = spring%rates * now%q
+        now%length = hypot(slip(1), slip(2))
+        now%along = slip / now%length
+        now%reach = now%length / (spring%rates(1) * now%equivalent)
+        now%mean = now%e(1) * now%along(1)**2 + now%e(2) * now%along(2)**2
+    end function relaxed
+
+end module friction_anisotropy
