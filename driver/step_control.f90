@@ -5,6 +5,7 @@
 !> error away (Richardson extrapolation).
 module step_control
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_parts, only : parted_chain
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
     use law_input, only : is_subloading, typical_coefficient
@@ -21,6 +22,7 @@ module step_control
     type :: stepper
         type(slider) :: system
         type(newmark) :: method
+        type(parted_chain), private :: blocks   !! takes its steps with several blocks
         type(programme) :: drive
         real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
         real(dp) :: t_end = 0.0_dp     !! [T]
@@ -113,8 +115,14 @@ contains
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements [L]
 
-        call self%method%step(self%system, self%origin + self%drive%position(time), &
-            self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
+        if (size(old%x) > 1) then
+            call self%blocks%step(self%method, self%system, self%origin &
+                + self%drive%position(time), self%drive%normal_traction(time, piece), &
+                time - old%time, old, new, report, guess)
+        else
+            call self%method%step(self%system, self%origin + self%drive%position(time), &
+                self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
+        end if
         new%time = time
         self%iterations = self%iterations + report%iterations
         self%most_iterations = max(self%most_iterations, report%iterations)

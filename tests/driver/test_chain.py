@@ -104,7 +104,7 @@ class Motion(Chain):
 
 class LongChain(Chain):
     def test_the_number_of_threads_changes_no_bit(self):
-        """16 parts, which two threads share, through the first events."""
+        """More parts than it takes for two threads to share them, through the first events."""
         (self.folder / 'case.nml').write_text(namelist({
             **RUN, ('chain', 'n_blocks'): '8000', ('chain', 'scatter'): '0.9', ('chain', 'ends'): "'periodic'",
             ('chain', 'coupling'): '1', ('chain', 'slip_rate'): '1',
