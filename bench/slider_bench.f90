@@ -7,6 +7,8 @@ program slider_bench
     use recorder, only : csv_recorder
     use run_settings, only : settings
     use simulation, only : outcome, simulate
+    use stopwatch, only : timer
+    !$ use omp_lib, only : omp_get_num_procs, omp_set_num_threads
     implicit none
 
     integer, parameter :: repetitions = 3
@@ -19,10 +21,12 @@ program slider_bench
     call get_command_argument(1, directory)
     open (newunit=text, file=trim(directory) // '/slider.txt', status='replace', action='write')
     places = [output_unit, text]
+    !$ call omp_set_num_threads(1)
     call compare(0.01_dp, 4.0_dp, 3.0e-4_dp)
     call compare(0.0_dp, 3.0_dp, 7.0e-2_dp)
     call show_orders()
     call show_chains()
+    call show_threads()
     close (text)
 
 contains
@@ -100,6 +104,31 @@ contains
             verdict(cost <= 250.0_dp)
         call say(trim(line))
     end subroutine show_chains
+
+    !> Time by the clock of a long chain in two threads and in one, in turn.
+    subroutine show_threads()
+        integer, parameter :: blocks = 100000, steps = 40, turns = 5
+        type(timer) :: times(2)
+        real(dp) :: cpu, iterations
+        integer :: threads, i
+
+        cpu = 0.0_dp
+        threads = 1
+        !$ threads = omp_get_num_procs()
+        if (threads < 2) return
+        do i = 1, turns
+            do threads = 1, 2
+                !$ call omp_set_num_threads(threads)
+                call times(threads)%start()
+                call time_chain(blocks, steps, cpu, iterations)
+                call times(threads)%stop()
+            end do
+        end do
+        !$ call omp_set_num_threads(1)
+        write (line, '(a, f6.2)') '1e5 blocks, two threads, times faster by the clock than one: ', &
+            times(1)%median() / times(2)%median()
+        call say(trim(line))
+    end subroutine show_threads
 
     !> Median of several runs; short chains, whose runs are short, are run more often.
     function cost_of_chain(n, few, many) result(cost)

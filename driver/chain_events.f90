@@ -3,6 +3,9 @@
 !> In every step, neighbours that slip faster than a limit are a run. A run that touches the blocks
 !> of an event that is under way belongs to it, and joins events that it touches together. An event
 !> ends with the last step in which one of its blocks slips that fast.
+!>
+!> On a ring the last block touches the first. An event over that seam is kept as two, one from the
+!> first block on and one up to the last, that are under way and end together, as one.
 module chain_events
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : statev_slip
@@ -15,7 +18,7 @@ module chain_events
     type :: chain_event
         real(dp) :: onset = 0.0_dp            !! start of the first step [T]
         real(dp) :: end = 0.0_dp              !! end of the last step [T]
-        integer :: first = 0, last = 0        !! blocks
+        integer :: first = 0, last = 0        !! blocks; over a ring's seam `last` goes on
         real(dp) :: slip = 0.0_dp             !! sum over the blocks [L]
         real(dp) :: peak_velocity = 0.0_dp    !! largest slip rate of a block [L/T]
         logical :: under_way = .true.         !! some of its blocks slip in this step
@@ -24,10 +27,12 @@ module chain_events
     !> Events under way, in the order of their blocks; no two of them touch.
     type :: chain_finder
         real(dp) :: slip_rate = 0.0_dp                !! the limit [L/T]
+        logical :: ring = .false.                     !! the last block touches the first
         type(chain_event), allocatable :: events(:)   !! room for `count` and more
         integer :: count = 0
     contains
-        procedure :: look
+        procedure :: look, give_up
+        procedure, private :: over_seam, hand_over
     end type chain_finder
 
 contains
@@ -49,6 +54,46 @@ contains
             slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
             if (slip > least) call take_in(self, i, slip, old%time, new%time, k)
         end do
+        if (self%over_seam(size(new%x))) then
+            associate (low => self%events(1), high => self%events(self%count))
+                low%under_way = low%under_way .or. high%under_way
+                high%under_way = low%under_way
+            end associate
+        end if
+        call self%hand_over(size(new%x), ended)
+    end subroutine look
+
+    !> Hands over all that is under way.
+    pure subroutine give_up(self, n_blocks, rest)
+        class(chain_finder), intent(inout) :: self
+        integer, intent(in) :: n_blocks
+        type(chain_event), allocatable, intent(out) :: rest(:)
+
+        self%events(:self%count)%under_way = .false.
+        call self%hand_over(n_blocks, rest)
+    end subroutine give_up
+
+    !> Are the first and the last event one, over the seam of a ring? Once they are they stay so:
+    !> events never shrink.
+    pure function over_seam(self, n_blocks) result(yes)
+        class(chain_finder), intent(in) :: self
+        integer, intent(in) :: n_blocks
+        logical :: yes
+
+        yes = .false.
+        if (self%ring .and. self%count > 1) yes = self%events(1)%first == 1 &
+            .and. self%events(self%count)%last == n_blocks
+    end function over_seam
+
+    !> Takes what is not under way out of the list.
+    pure subroutine hand_over(self, n_blocks, ended)
+        class(chain_finder), intent(inout) :: self
+        integer, intent(in) :: n_blocks
+        type(chain_event), allocatable, intent(out) :: ended(:)
+        logical :: joined
+
+        joined = self%over_seam(n_blocks)
+        if (joined) joined = .not. self%events(1)%under_way
         associate (all => self%events(:self%count))
             ended = pack(all, .not. all%under_way)
         end associate
@@ -56,7 +101,11 @@ contains
         self%events(:self%count - size(ended)) = pack(self%events(:self%count), &
             self%events(:self%count)%under_way)
         self%count = self%count - size(ended)
-    end subroutine look
+        if (.not. joined) return
+        ended(1)%last = n_blocks + ended(1)%last
+        call absorb(ended(size(ended)), ended(1))
+        ended = ended(2:)
+    end subroutine hand_over
 
     !> Adds a block that slips; the blocks of a step come one after the other.
     pure subroutine take_in(self, block, slip, start, end, k)
@@ -113,17 +162,23 @@ contains
         integer, intent(in) :: k
         integer :: i
 
-        associate (a => self%events(k), b => self%events(k + 1))
-            a%onset = min(a%onset, b%onset)
-            a%end = max(a%end, b%end)
-            a%last = max(a%last, b%last)
-            a%slip = a%slip + b%slip
-            a%peak_velocity = max(a%peak_velocity, b%peak_velocity)
-        end associate
+        call absorb(self%events(k), self%events(k + 1))
         do i = k + 1, self%count - 1
             self%events(i) = self%events(i + 1)
         end do
         self%count = self%count - 1
     end subroutine join
+
+    !> Adds to an event the one behind it.
+    pure subroutine absorb(event, behind)
+        type(chain_event), intent(inout) :: event
+        type(chain_event), intent(in) :: behind
+
+        event%onset = min(event%onset, behind%onset)
+        event%end = max(event%end, behind%end)
+        event%last = max(event%last, behind%last)
+        event%slip = event%slip + behind%slip
+        event%peak_velocity = max(event%peak_velocity, behind%peak_velocity)
+    end subroutine absorb
 
 end module chain_events

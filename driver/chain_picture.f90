@@ -20,7 +20,8 @@ contains
         call begin(script, directory, stem // '_events', stem)
         call script%write_line('# smaller than minus its logarithm: greater than a moment')
         call script%write_line('set table $larger')
-        call script%write_line('plot file using (-log10(column("moment"))):(1) smooth cumulative')
+        call script%write_line('plot file using (column("ended") > 0 ? ' &
+            // '-log10(column("moment")) : NaN):(1) smooth cumulative')
         call script%write_line('unset table')
         call script%write_line('set datafile separator whitespace')
         call script%write_line('set logscale y')

@@ -18,7 +18,7 @@ module recorder
     character(len=*), parameter :: events_header = &
         'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
     character(len=*), parameter :: chain_events_header = &
-        'onset,duration,first_block,blocks,slip,moment,peak_velocity'
+        'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended'
     character(len=*), parameter :: fields_header = 'time,block,slip_rate,slip,mu'
     integer, parameter :: rows_between_flushes = 200
     integer, parameter, public :: most_in_csv = 1000   !! blocks whose fields fit in a CSV file
@@ -131,16 +131,17 @@ contains
     end function mean
 
     !> One row of the catalogue of a chain.
-    subroutine write_chain_event(self, event, area)
+    subroutine write_chain_event(self, event, area, ended)
         class(csv_recorder), intent(inout) :: self
         type(chain_event), intent(in) :: event
         real(dp), intent(in) :: area   !! contact area of a block [L^2]
+        logical, intent(in) :: ended   !! before the run did
         character(len=24) :: blocks
 
         write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
         call self%events%write_line(row([event%onset, event%end - event%onset]) // ',' &
             // trim(blocks) // ',' // row([event%slip / (event%last - event%first + 1), &
-            area * event%slip, event%peak_velocity]))
+            area * event%slip, event%peak_velocity]) // merge(',1', ',0', ended))
         call self%events%flush_lines()
     end subroutine write_chain_event
 
@@ -149,7 +150,7 @@ contains
     subroutine write_fields(self, old, new)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
-        character(len=72) :: line
+        character(len=12) :: block
         real(dp) :: dt
         integer :: i
 
@@ -160,10 +161,10 @@ contains
             return
         end if
         do i = 1, size(new%x)
-            write (line, '(es13.6e2, ",", i0, 3(",", es13.6e2))') new%time, i, &
-                (new%statev(i, statev_slip) - old%statev(i, statev_slip)) / dt, &
-                new%statev(i, statev_slip), new%statev(i, statev_mu)
-            call self%fields%write_line(trim(line))
+            write (block, '(",", i0, ",")') i
+            call self%fields%write_line(row([new%time]) // trim(block) &
+                // row([(new%statev(i, statev_slip) - old%statev(i, statev_slip)) / dt, &
+                new%statev(i, statev_slip), new%statev(i, statev_mu)]))
         end do
         call self%fields%write_line('')
         call self%fields%flush_lines()

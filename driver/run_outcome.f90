@@ -24,8 +24,9 @@ module run_outcome
         integer :: snap_backs = 0                  !! steps that saw several equilibria
         real(dp) :: time = 0.0_dp                  !! reached [T]
         real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
-        integer :: chain_events = 0                !! in the catalogue of a chain
+        integer :: chain_events = 0                !! in the catalogue of a chain, ended
         real(dp) :: largest_moment = 0.0_dp        !! of them [L^3]
+        integer :: cut_events = 0                  !! there, but still under way at the end
         type(energy_balance) :: energy
         type(event_totals), allocatable :: pieces(:)
     end type outcome

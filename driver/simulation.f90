@@ -12,7 +12,7 @@ module simulation
     use recorder, only : csv_recorder
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use slider_system, only : initial_state, place, slider, slider_state, swap_states
+    use slider_system, only : ends_periodic, initial_state, place, slider, slider_state, swap_states
     use slip_events, only : moment, slip_event, turning_point
     use time_integrator, only : step_report
     implicit none
@@ -40,8 +40,9 @@ contains
         type(step_report) :: report
         type(progress) :: bar
         real(dp) :: last_checkpoint
-        logical :: complete
+        logical :: complete, paused
 
+        paused = .false.
         if (present(from)) then
             live = from
         else
@@ -79,6 +80,7 @@ contains
             if (present(checkpoint_name)) call keep()
         end do
         call bar%clear()
+        if (run%chain%n_blocks > 1 .and. .not. paused) call list_rest(live%state)
         result = live%result
         result%iterations = live%steps%iterations
         result%most_iterations = live%steps%most_iterations
@@ -93,6 +95,7 @@ contains
 
             if (interrupted()) then
                 call write_checkpoint(checkpoint_name, run, live, records)
+                paused = .true.
                 call fail('interrupted; stickslip run with --resume goes on from here')
             else if (mod(live%result%steps, steps_between_looks) == 0) then
                 if (seconds() - last_checkpoint < run%checkpoint) return
@@ -128,7 +131,7 @@ contains
 
             call live%chain%look(before, now, ended)
             do i = 1, size(ended)
-                call records%write_chain_event(ended(i), run%area)
+                call records%write_chain_event(ended(i), run%area, ended=.true.)
                 live%result%chain_events = live%result%chain_events + 1
                 live%result%largest_moment = max(live%result%largest_moment, &
                     run%area * ended(i)%slip)
@@ -136,17 +139,32 @@ contains
             if (records%failed()) call fail('cannot write the events (disk full?)')
         end subroutine list_events
 
+        !> The events of a chain that the end of the run cuts short.
+        subroutine list_rest(state)
+            type(slider_state), intent(in) :: state
+            type(chain_event), allocatable :: rest(:)
+            integer :: i
+
+            call live%chain%give_up(size(state%x), rest)
+            do i = 1, size(rest)
+                call records%write_chain_event(rest(i), run%area, ended=.false.)
+            end do
+            live%result%cut_events = size(rest)
+            if (records%failed()) call fail('cannot write the events (disk full?)')
+        end subroutine list_rest
+
         !> Looks for slip events, at the end of a step and where the force turns within.
         subroutine watch(before, now)
             type(slider_state), intent(in) :: before, now
-            type(moment) :: turn
+            type(moment) :: turn, seen_now
             logical :: found
             integer :: i
 
             i = run%drive%piece(before%time)
-            call turning_point(seen(before, i), seen(now, i), turn, found)
+            seen_now = seen(now, i)
+            call turning_point(seen(before, i), seen_now, turn, found)
             if (found .and. now%time <= run%drive%next_start(before%time)) call look(turn)
-            call look(seen(now, i))
+            call look(seen_now)
             live%result%peak_velocity = max(live%result%peak_velocity, maxval(now%v))
         end subroutine watch
 
@@ -154,13 +172,21 @@ contains
             type(slider_state), intent(in) :: state
             integer, intent(in) :: i   !! piece of the programme
             type(moment) :: now
-            real(dp) :: velocity
-            integer :: n
+            real(dp) :: velocity, spring, slip   ! sums, then means over the blocks
+            integer :: n, k
 
             n = size(state%x)
-            velocity = sum(state%v) / n
-            now = moment(state%time, sum(state%spring) / n, sum(state%statev(:, statev_slip)) / n, &
-                velocity, run%stiffness * (run%drive%drive_velocity(state%time, i) - velocity))
+            velocity = 0.0_dp
+            spring = 0.0_dp
+            slip = 0.0_dp
+            do k = 1, n
+                velocity = velocity + state%v(k)
+                spring = spring + state%spring(k)
+                slip = slip + state%statev(k, statev_slip)
+            end do
+            velocity = velocity / n
+            now = moment(state%time, spring / n, slip / n, velocity, &
+                run%stiffness * (run%drive%drive_velocity(state%time, i) - velocity))
         end function seen
 
         subroutine look(now)
@@ -200,6 +226,7 @@ contains
             run%chain%coupling, run%chain%ends)
         if (run%chain%scatter > 0.0_dp) system%load = scattered(run%chain)
         live%chain%slip_rate = run%chain%slip_rate
+        live%chain%ring = run%chain%ends == ends_periodic
         allocate (live%chain%events(16))
         live%finder%threshold = smallest_drop * run%area &
             * typical_coefficient(run%props) * run%drive%largest_normal()

@@ -6,6 +6,7 @@
 !> The friction forces come from the same routines that finite-element hosts call; the normal
 !> traction is controlled through the penetration that carries it.
 module slider_system
+    use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
         friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et
@@ -19,6 +20,8 @@ module slider_system
     integer, parameter, public :: ends_free = 1       !! nothing
     integer, parameter, public :: ends_fixed = 2      !! a wall that stands still
     integer, parameter, public :: ends_periodic = 3   !! each other
+    integer, parameter, public :: ends_free_fixed = 4 !! the first to nothing, the last to a wall
+    integer, parameter, public :: ends_fixed_free = 5 !! the first to a wall, the last to nothing
 
     !> What stays.
     type :: slider
@@ -26,6 +29,7 @@ module slider_system
         real(dp), allocatable :: props(:)            !! constants of the friction routine
         real(dp) :: coupling = 0.0_dp                !! of neighbours [F/L]
         integer :: ends = ends_free
+        real(dp) :: walls(2) = 0.0_dp                !! where they stand [L]
         real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
                                            !! programme; all 1 if not allocated [-]
     contains
@@ -139,7 +143,7 @@ contains
         if (self%coupling <= 0.0_dp) return
         n = size(x)
         k = factor * self%coupling
-        call beyond_ends(self%ends, x, before, after)
+        call beyond_ends(self, x, before, after)
         if (n == 1) then
             force(1) = force(1) + k * (before - 2.0_dp * x(1) + after)
             return
@@ -164,26 +168,27 @@ contains
         do i = 2, size(x)
             energy = energy + (x(i) - x(i - 1))**2
         end do
-        call beyond_ends(self%ends, x, before, after)
+        call beyond_ends(self, x, before, after)
         energy = energy + (x(1) - before)**2
-        if (self%ends == ends_fixed) energy = energy + (after - x(size(x)))**2
+        if (self%ends /= ends_periodic) energy = energy + (after - x(size(x)))**2
         energy = 0.5_dp * self%coupling * energy
     end function coupling_energy
 
     !> Displacements of what the first and the last block are coupled to.
-    pure subroutine beyond_ends(ends, x, before, after)
-        integer, intent(in) :: ends
+    pure subroutine beyond_ends(system, x, before, after)
+        class(slider), intent(in) :: system
         real(dp), intent(in) :: x(:)               !! [L]
         real(dp), intent(out) :: before, after     !! [L]
 
-        before = 0.0_dp
-        after = 0.0_dp
-        if (ends == ends_fixed) return
-        before = x(1)   ! no force
-        after = x(size(x))
-        if (ends == ends_free) return
-        before = x(size(x))
-        after = x(1)
+        before = system%walls(1)
+        after = system%walls(2)
+        if (system%ends == ends_periodic) then
+            before = x(size(x))
+            after = x(1)
+        end if
+        ! no force
+        if (system%ends == ends_free .or. system%ends == ends_free_fixed) before = x(1)
+        if (system%ends == ends_free .or. system%ends == ends_fixed_free) after = x(size(x))
     end subroutine beyond_ends
 
     !> Weighted sum of states; their moments, drives and loads are not touched.
@@ -265,20 +270,28 @@ contains
     end subroutine friction_forces
 
     !> The same for blocks `first` to `last`, a part that stays in cache: what the friction routine
-    !> needs and leaves beside the forces never gets to memory.
+    !> needs and leaves beside the forces never gets to memory. In three dimensions and from a cache
+    !> line on, because the batch routine then works where the numbers are, otherwise on copies.
     subroutine forces_on_part(system, old, du_n, dx, dt, first, last, new, force, stiffness, status)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: old(:, :), du_n, dx(:), dt
         integer, intent(in) :: first, last
         real(dp), intent(inout) :: new(:, :), force(:), stiffness(:)
         integer, intent(out) :: status
-        real(dp) :: du(last - first + 1, 2), statev(last - first + 1, statev_size), &
-            traction(last - first + 1, 2), tangent(last - first + 1, 2, 2)
-        integer :: statuses(last - first + 1), k
+        integer, parameter :: line = 8   ! numbers of a cache line
+        real(dp) :: du(last - first + 1, 3), statev(last - first + 1, statev_size), &
+            traction(last - first + 1, 3)
+        real(dp), target :: room(9 * (last - first + 1) + line - 1)
+        real(dp), pointer, contiguous :: tangent(:, :, :)
+        integer :: statuses(last - first + 1), n, skipped, k
 
+        n = last - first + 1
+        skipped = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
+        tangent(1:n, 1:3, 1:3) => room(skipped + 1:skipped + 9 * n)
         du(:, 1) = du_n
         if (allocated(system%load)) du(:, 1) = du_n * system%load(first:last)
         du(:, 2) = dx(first:last)
+        du(:, 3) = 0.0_dp
         do k = 1, statev_size
             statev(:, k) = old(first:last, k)
         end do
@@ -342,7 +355,11 @@ contains
         type(slider_state), intent(in) :: old, new
         type(energy_balance), intent(inout) :: energy
         type(slider_state), intent(in), optional :: middle
+        real(dp) :: pull, drag   ! sums over the blocks [F], [L^2/T]
+        integer :: i
 
+        pull = 0.0_dp
+        drag = 0.0_dp
         if (present(middle)) then
             energy%drive_work = energy%drive_work + (sum(old%spring) &
                 * (4.0_dp * middle%drive - 3.0_dp * old%drive - new%drive) &
@@ -351,26 +368,39 @@ contains
             energy%damped = energy%damped + self%damping * (new%time - old%time) &
                 * sum(old%v**2 + 4.0_dp * middle%v**2 + new%v**2) / 6.0_dp
         else
-            energy%drive_work = energy%drive_work &
-                + 0.5_dp * sum(old%spring + new%spring) * (new%drive - old%drive)
-            energy%damped = energy%damped &
-                + 0.5_dp * self%damping * sum((old%v + new%v) * (new%x - old%x))
+            do i = 1, size(new%x)
+                pull = pull + (old%spring(i) + new%spring(i))
+                drag = drag + (old%v(i) + new%v(i)) * (new%x(i) - old%x(i))
+            end do
+            energy%drive_work = energy%drive_work + 0.5_dp * pull * (new%drive - old%drive)
+            energy%damped = energy%damped + 0.5_dp * self%damping * drag
         end if
         call self%take_stock(new, energy)
-        energy%dissipated = self%area * sum(new%statev(:, statev_dissipation))
     end subroutine account
 
-    !> Energies that a state holds: of the motion, of the springs, of the contact.
+    !> Energies that a state holds: of the motion, of the springs, of the contact; and what it has
+    !> dissipated. All in one loop: a sum waits for each addition, four wait together.
     pure subroutine take_stock(self, state, energy)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: state
         type(energy_balance), intent(inout) :: energy
+        real(dp) :: motion, springs, contact, dissipated   ! sums over the blocks
+        integer :: i
 
-        energy%kinetic = 0.5_dp * self%mass * sum(state%v**2)
-        energy%spring = 0.5_dp * sum(state%spring**2) / self%stiffness &
-            + self%coupling_energy(state%x)
-        energy%contact = 0.5_dp * self%area * self%props(3) &
-            * sum(state%statev(:, statev_u_et)**2)
+        motion = 0.0_dp
+        springs = 0.0_dp
+        contact = 0.0_dp
+        dissipated = 0.0_dp
+        do i = 1, size(state%x)
+            motion = motion + state%v(i)**2
+            springs = springs + state%spring(i)**2
+            contact = contact + state%statev(i, statev_u_et)**2
+            dissipated = dissipated + state%statev(i, statev_dissipation)
+        end do
+        energy%kinetic = 0.5_dp * self%mass * motion
+        energy%spring = 0.5_dp * springs / self%stiffness + self%coupling_energy(state%x)
+        energy%contact = 0.5_dp * self%area * self%props(3) * contact
+        energy%dissipated = self%area * dissipated
     end subroutine take_stock
 
     !> Held by the springs, the contact and the motion together.

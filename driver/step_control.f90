@@ -5,6 +5,7 @@
 !> much the coarsest one matters in that estimates the error.
 module step_control
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_parts, only : parted_chain
     use exponential_rule, only : exponential
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
@@ -25,6 +26,7 @@ module step_control
     type :: stepper
         type(slider) :: system
         type(newmark) :: method
+        type(parted_chain), private :: blocks   !! takes its steps with several blocks
         type(programme) :: drive
         real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
         real(dp) :: t_end = 0.0_dp     !! [T]
@@ -166,7 +168,10 @@ contains
 
         drive = self%origin + self%drive%position(time)
         normal = self%drive%normal_traction(time, piece)
-        if (.not. self%exponential) then
+        if (size(old%x) > 1) then
+            call self%blocks%step(self%method, self%system, drive, normal, time - old%time, old, &
+                new, report, guess)
+        else if (.not. self%exponential) then
             call self%method%step(self%system, drive, normal, time - old%time, old, new, report, &
                 guess)
         else if (present(guess)) then

@@ -31,7 +31,8 @@ contains
             ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
         write (output_unit, '(a, i0)') 'slip events        ', all%events
         if (run%chain%n_blocks > 1) then
-            write (output_unit, '(a, i0)') 'events of blocks   ', result%chain_events
+            write (output_unit, '(2(a, i0), a)') 'events of blocks   ', result%chain_events, &
+                ', and ', result%cut_events, ' under way at the end'
             call line('largest moment     ', result%largest_moment, &
                 min(1, result%chain_events), '[L^3]')
         end if

@@ -4,7 +4,8 @@ module time_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_no_convergence, friction_ok, friction_snap_back
     use chain_solver, only : chain_matrix
-    use slider_system, only : ends_free, ends_periodic, friction_forces, slider, slider_state
+    use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
+        friction_forces, slider, slider_state
     implicit none
     private
 
@@ -34,6 +35,7 @@ module time_integrator
         integer :: status = friction_ok     !! ok, snap back, or the error that ended the step
         integer :: iterations = 0           !! linear systems solved
         real(dp) :: stiffness = 0.0_dp      !! of drive spring and contact at the end, largest [F/L]
+        real(dp) :: scale = 0.0_dp          !! the largest force, by which a residual is held [F]
         real(dp) :: residual(0:most_shown) = 0.0_dp   !! relative, before each iteration and at the
                                                       !! end
     end type step_report
@@ -124,6 +126,7 @@ contains
                     if (norm < norm_old) exit
                 end do
             end do
+            report%scale = scale
             report%stiffness = system%stiffness + maxval(w%tangent) + 4.0_dp * system%coupling
             if (.not. inertial) call look_for_another_balance(w%dx, w%tangent)
         end associate
@@ -203,10 +206,13 @@ contains
             matrix%beside = -k
             matrix%diagonal = inertia + 2.0_dp * k + (1.0_dp - self%alpha_f) &
                 * (system%stiffness + tangent)
-            if (system%ends /= ends_free) return
             n = size(tangent)
-            matrix%diagonal(1) = matrix%diagonal(1) - k
-            matrix%diagonal(n) = matrix%diagonal(n) - k
+            if (system%ends == ends_free .or. system%ends == ends_free_fixed) then
+                matrix%diagonal(1) = matrix%diagonal(1) - k
+            end if
+            if (system%ends == ends_free .or. system%ends == ends_fixed_free) then
+                matrix%diagonal(n) = matrix%diagonal(n) - k
+            end if
         end subroutine fill
 
         !> The forces must fall all the way from no displacement to the one found: otherwise there

@@ -2,6 +2,7 @@
 
 STICKSLIP names the program.
 """
+import os
 import random
 import signal
 import time
@@ -101,44 +102,98 @@ class Motion(Chain):
         self.assertAlmostEqual(late[0][5], late[1][5], delta=0.02 * late[1][5])   # spring force
 
 
+class LongChain(Chain):
+    def test_the_number_of_threads_changes_no_bit(self):
+        """More parts than it takes for two threads to share them, through the first events."""
+        (self.folder / 'case.nml').write_text(namelist({
+            **RUN, ('chain', 'n_blocks'): '8000', ('chain', 'scatter'): '0.9', ('chain', 'ends'): "'periodic'",
+            ('chain', 'coupling'): '1', ('chain', 'slip_rate'): '1',
+            ('time', 't_end'): '0.8', ('time', 'dt'): '1e-2', ('output', 'interval'): '10'}))
+        found = []
+        for threads in '1', '2':
+            result = self.run_program('run', 'case.nml', '--no-plot', env={**os.environ, 'OMP_NUM_THREADS': threads})
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            found.append([(self.folder / 'case_out' / name).read_bytes()
+                          for name in ('case.csv', 'case_events.csv')] + [result.stdout])
+        self.assertEqual(found[0], found[1])
+        self.assertGreater(found[0][1].count(b'\n'), 100)
+
+
 class Catalogue(Chain):
     def test_a_chain_that_moves_as_one_has_events_of_all_its_blocks(self):
         self.run_chain({('output', 'fields'): '1'})
         rows = self.rows('case_out/case_events.csv')
-        self.assertEqual(','.join(rows[0]), 'onset,duration,first_block,blocks,slip,moment,peak_velocity')
+        self.assertEqual(','.join(rows[0]), 'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended')
         self.assertEqual((rows[0]['first_block'], rows[0]['blocks']), ('1', '20'))
         self.assertAlmostEqual(float(rows[0]['moment']), 20 * float(rows[0]['slip']), delta=1e-12)
         self.assertGreater(float(rows[0]['slip']), 0.5)
 
-    def test_uncoupled_blocks_that_touch_in_space_and_time_are_counted_together(self):
+    def test_events_are_slip_that_is_connected_in_space_and_time(self):
         """The catalogue against one made from the fields of every step, by another way."""
-        self.run_chain({('chain', 'coupling'): '0.5', ('chain', 'scatter'): '0.5', ('chain', 'slip_rate'): '1',
-                        ('output', 'fields'): '1', ('time', 't_end'): '8'})
-        slips = self.slips()
-        # An event reaches over all blocks it has moved: what touches any of them while it lasts is its.
+        for ends, seed in ('free', '1'), ('periodic', '1'), ('periodic', '2'):
+            self.run_chain({('chain', 'coupling'): '0.5', ('chain', 'scatter'): '0.5', ('chain', 'slip_rate'): '1',
+                            ('chain', 'ends'): f"'{ends}'", ('chain', 'seed'): seed,
+                            ('output', 'fields'): '1', ('time', 't_end'): '8'})
+            ended, under_way = self.connected(self.slips(), ends == 'periodic')
+            rows = self.rows('case_out/case_events.csv')
+            self.assertGreater(len(rows), 10)
+            for events, mark in (ended, '1'), (under_way, '0'):
+                listed = [[float(row[name]) for name in ('first_block', 'blocks', 'moment', 'onset')]
+                          for row in rows if row['ended'] == mark]
+                self.assertEqual(len(events), len(listed))
+                for ours, theirs in zip(sorted(events), sorted(listed)):
+                    self.assertEqual(ours[:2], tuple(theirs[:2]))
+                    self.assertAlmostEqual(ours[2], theirs[2], delta=1e-9)
+                    self.assertAlmostEqual(ours[3], theirs[3], delta=1e-9)
+            over_seam = sum(first + blocks - 1 > 20 for first, blocks, *_ in ended)
+            self.assertEqual(over_seam > 0, ends == 'periodic')
+
+    def connected(self, slips, ring):
+        """(first block, blocks, moment, onset) of the events that ended, and of the others."""
+        def touch(a, b):
+            return any(abs(i - j) <= 1 or (ring and abs(i - j) == 19) for i in a for j in b)
+
+        # an event reaches over all blocks it has moved: what touches any of them while it lasts is its
         under_way, ended = [], []
-        for before, now in zip(slips, slips[1:]):
-            moving = [i for i in range(20) if now[i] - before[i] > 1e-3]
-            groups = [set([i]) for i in moving]
-            for event in under_way:
-                groups.append(event)
-            merged = True
-            while merged:
-                merged = False
-                for a in range(len(groups)):
-                    for b in range(a + 1, len(groups)):
-                        if any(abs(i - j) <= 1 for i in groups[a] for j in groups[b]):
-                            groups[a] |= groups.pop(b)
-                            merged = True
-                            break
-                    if merged:
+        for step, (before, now) in enumerate(zip(slips, slips[1:])):
+            moving = {i: now[i] - before[i] for i in range(20) if now[i] - before[i] > 1e-3}
+            groups = [({i}, slip, step) for i, slip in moving.items()] + under_way
+            a = 0
+            while a < len(groups):
+                for b in range(a + 1, len(groups)):
+                    if touch(groups[a][0], groups[b][0]):
+                        one, other = groups[a], groups.pop(b)
+                        groups[a] = (one[0] | other[0], one[1] + other[1], min(one[2], other[2]))
+                        a = -1   # once more from the start
                         break
-            under_way = [g for g in groups if g & set(moving)]
-            ended += [g for g in groups if not g & set(moving)]
+                a += 1
+            under_way = [group for group in groups if group[0] & set(moving)]
+            ended += [group for group in groups if not group[0] & set(moving)]
+
+        def row(blocks, slip, step):
+            first = min(blocks)
+            if ring and len(blocks) < 20 and first == 0:
+                first = next((i for i in sorted(blocks) if i - 1 not in blocks and i > 0), 0)
+            return first + 1, len(blocks), slip, step * 1e-3
+
+        return [row(*event) for event in ended], [row(*event) for event in under_way]
+
+    def test_what_is_under_way_at_the_end_is_listed_and_counted(self):
+        said = self.run_chain({('time', 't_end'): '4.05'})
         rows = self.rows('case_out/case_events.csv')
-        self.assertGreater(len(rows), 10)
-        self.assertEqual(sorted((min(g) + 1, len(g)) for g in ended),
-                         sorted((int(row['first_block']), int(row['blocks'])) for row in rows))
+        cut = [row for row in rows if row['ended'] == '0']
+        self.assertEqual(len(cut), 1)
+        self.assertAlmostEqual(float(cut[0]['onset']) + float(cut[0]['duration']), 4.05, delta=2e-3)
+        self.assertIn(f'events of blocks   {len(rows) - 1}, and 1 under way at the end', said)
+
+    def test_fields_have_all_their_digits(self):
+        self.run_chain({('chain', 'n_blocks'): '2', ('output', 'fields'): '1', ('output', 'interval'): '1',
+                        ('time', 't_end'): '3.5'})
+        fields, series = self.rows('case_out/case_fields.csv'), self.series()
+        for i, row in enumerate(series):
+            pair = [float(field['slip']) for field in fields[2 * i:2 * i + 2]]
+            self.assertEqual(float(fields[2 * i]['time']), row[0])
+            self.assertAlmostEqual(sum(pair) / 2, row[9], delta=4e-16 * (1 + row[9]))
 
     def test_pictures_are_drawn(self):
         (self.folder / 'case.nml').write_text(namelist({**RUN, ('output', 'fields'): '50'}))
@@ -158,6 +213,16 @@ class BadChains(Chain):
                      "&chain ends = 'loose': must be one of", '&chain scatter = 1: must be from 0 to 0.99',
                      '&chain seed = -1: must be >= 0', '&chain slip_rate = 0: must be > 0',
                      '&chain colour: unknown key', '&output fields = -1: must be >= 0')
+
+    def test_every_key_with_what_it_cannot_be(self):
+        self.refused(namelist({('chain', 'n_blocks'): '1000001', ('chain', 'coupling'): 'stiff',
+                               ('chain', 'ends'): '3', ('chain', 'scatter'): 'nan', ('chain', 'seed'): '1.5',
+                               ('chain', 'slip_rate'): "'fast'", ('output', 'fields'): '1.5'}),
+                     '&chain n_blocks = 1000001: must be from 1 to 1000000', '&chain coupling = stiff: must be a number',
+                     "&chain ends = 3: must be text in quotes, one of 'free', 'fixed', 'periodic'",
+                     '&chain scatter = nan: must be finite', '&chain seed = 1.5: must be a whole number',
+                     "&chain slip_rate = 'fast': must be a number", '&output fields = 1.5: must be a whole number')
+        self.refused(namelist({**RUN, ('chain', 'seed'): '1\n  seed = 2'}), '&chain seed')
 
     def test_what_is_missing_or_does_not_fit(self):
         self.refused(namelist({('chain', 'seed'): '1'}), '&chain n_blocks: is missing',
