@@ -47,12 +47,13 @@ contains
         if (status /= 0) return
         associate (x => now%state, s => now%steps, r => now%result)
             write (unit, iostat=status) first_words, digest(run), size(x%x), size(r%pieces), &
-                size(r%onsets), now%chain%count, x%time, x%drive, x%normal, x%x, x%v, x%a, &
-                x%spring, x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
-                s%iterations, s%most_iterations, s%last_error, s%rule%contact, now%finder, &
-                r%steps, r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
-                r%chain_events, r%largest_moment, now%rows_due, now%fields_due, records%rows, &
-                records%series%bytes, records%events%bytes, records%fields_place()
+                size(r%onsets), now%chain%count, x%time, x%drive, x%normal, x%drive_work, &
+                x%damped, x%x, x%v, x%a, x%spring, x%friction, x%statev, s%origin, s%dt, &
+                s%passed, s%parts, s%rejected, s%iterations, s%most_iterations, s%last_error, &
+                s%rule%contact, now%finder, r%steps, r%snap_backs, r%peak_velocity, r%energy, &
+                r%pieces, r%onsets, r%chain_events, r%largest_moment, now%rows_due, &
+                now%fields_due, records%rows, records%series%bytes, records%events%bytes, &
+                records%fields_place()
             ! by itself: flang 22 ends a statement at an array of no elements of a derived type
             if (now%chain%count > 0 .and. status == 0) then
                 write (unit, iostat=status) now%chain%events(:now%chain%count)
@@ -101,11 +102,12 @@ contains
             allocate (now%result%onsets(events), now%chain%events(max(1, under_way)))
             now%chain%count = under_way
             associate (x => now%state, s => now%steps, r => now%result)
-                read (unit, iostat=status) x%time, x%drive, x%normal, x%x, x%v, x%a, x%spring, &
-                    x%friction, x%statev, s%origin, s%dt, s%passed, s%parts, s%rejected, &
-                    s%iterations, s%most_iterations, s%last_error, s%rule%contact, now%finder, &
-                    r%steps, r%snap_backs, r%peak_velocity, r%energy, r%pieces, r%onsets, &
-                    r%chain_events, r%largest_moment, now%rows_due, now%fields_due, rows, bytes
+                read (unit, iostat=status) x%time, x%drive, x%normal, x%drive_work, x%damped, &
+                    x%x, x%v, x%a, x%spring, x%friction, x%statev, s%origin, s%dt, s%passed, &
+                    s%parts, s%rejected, s%iterations, s%most_iterations, s%last_error, &
+                    s%rule%contact, now%finder, r%steps, r%snap_backs, r%peak_velocity, &
+                    r%energy, r%pieces, r%onsets, r%chain_events, r%largest_moment, &
+                    now%rows_due, now%fields_due, rows, bytes
                 if (under_way > 0 .and. status == 0) then
                     read (unit, iostat=status) now%chain%events(:under_way)
                 end if

@@ -48,7 +48,7 @@ contains
         type(slider_state), intent(inout) :: new   !! allocated like `old`
         type(step_report), intent(out) :: report
         logical, intent(in) :: fit     !! take for k what the contact shows in this step
-        real(dp), intent(in), optional :: guess   !! of the displacement at the end [L]
+        real(dp), intent(in), optional :: guess(:)   !! of the displacement at the end [L]
         type(equation) :: balance
         real(dp) :: q(1), tangent(1), residual, scale
 
@@ -58,7 +58,7 @@ contains
         new%normal = normal
         balance = balance_of_step(self%contact, system, drive, dt, old)
         q(1) = linear_guess()
-        if (present(guess)) q(1) = guess - old%x(1)
+        if (present(guess)) q = guess - old%x
         call evaluate()
         if (report%status < 0) return
         if (fit .and. differs(tangent(1))) then
@@ -71,13 +71,28 @@ contains
         call find_balance()
         if (report%status < 0) return
         report%stiffness = system%stiffness + tangent(1)
-        associate (b => balance, o => balance%response)
-            new%v(1) = old%v(1) * o%ds + (dt / system%mass) * (o%s * b%start + o%i0 * (b%pull &
-                - new%friction(1) + self%contact * q(1) - b%start))
-        end associate
-        new%a(1) = (new%spring(1) - system%damping * new%v(1) - new%friction(1)) / system%mass
+        call finish_step()
 
     contains
+
+        !> What follows from the displacement. Damping is what the work of the forces leaves over.
+        subroutine finish_step()
+            real(dp) :: rise, mean   ! of the force over the step, and the mean displacement
+
+            associate (b => balance, o => balance%response)
+                rise = b%pull - new%friction(1) + self%contact * q(1) - b%start
+                new%v(1) = old%v(1) * o%ds + (dt / system%mass) * (o%s * b%start + o%i0 * rise)
+                mean = dt * old%v(1) * o%i0 + (dt**2 / system%mass) * (o%i1 * b%start + o%i2 &
+                    * rise)
+                new%damped = old%damped
+                if (system%damping > 0.0_dp) new%damped = old%damped + (b%start + rise) * q(1) &
+                    - rise * mean - 0.5_dp * (system%mass * (new%v(1)**2 - old%v(1)**2) &
+                    + (system%stiffness + self%contact) * q(1)**2)
+            end associate
+            new%drive_work = old%drive_work + system%stiffness * (drive - old%drive) * (0.5_dp &
+                * (drive + old%drive) - old%x(1) - mean)
+            new%a(1) = (new%spring(1) - system%damping * new%v(1) - new%friction(1)) / system%mass
+        end subroutine finish_step
 
         !> Would k = `stiffness` change the step?
         pure function differs(stiffness) result(yes)

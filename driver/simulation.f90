@@ -64,12 +64,6 @@ contains
                 live%result%snap_backs + 1
             live%result%steps = live%result%steps + 1
             if (complete) live%rows_due = live%rows_due + 1
-            if (run%adaptive) then
-                call live%steps%system%account(live%state, new, live%result%energy, &
-                    live%steps%middle)
-            else
-                call live%steps%system%account(live%state, new, live%result%energy)
-            end if
             if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
             if (live%rows_due == run%interval) live%rows_due = 0
             call record_fields(live%state, new)
@@ -81,6 +75,7 @@ contains
         end do
         call bar%clear()
         if (run%chain%n_blocks > 1 .and. .not. paused) call list_rest(live%state)
+        call live%steps%system%take_stock(live%state, live%result%energy)
         result = live%result
         result%iterations = live%steps%iterations
         result%most_iterations = live%steps%most_iterations

@@ -56,6 +56,8 @@ module slider_system
         real(dp) :: time = 0.0_dp                !! [T]
         real(dp) :: drive = 0.0_dp               !! position of the drive [L]
         real(dp) :: normal = 0.0_dp              !! normal traction [F/L^2]
+        real(dp) :: drive_work = 0.0_dp          !! of the drive since the start [F L]
+        real(dp) :: damped = 0.0_dp              !! energy lost to the dampers since then [F L]
         real(dp), allocatable :: x(:), v(:), a(:)   !! of each block [L], [L/T], [L/T^2]
         real(dp), allocatable :: spring(:)       !! force of the drive spring [F]
         real(dp), allocatable :: friction(:)     !! S f_t, positive when it opposes +x [F]
@@ -191,13 +193,15 @@ contains
         if (system%ends == ends_free .or. system%ends == ends_fixed_free) after = x(size(x))
     end subroutine beyond_ends
 
-    !> Weighted sum of states; their moments, drives and loads are not touched.
+    !> Weighted sum of states, but for their times, drives and loads.
     pure subroutine blend(states, weights, mixed)
         type(slider_state), intent(in) :: states(:)
         real(dp), intent(in) :: weights(:)           !! one for each state [-]
         type(slider_state), intent(inout) :: mixed   !! allocated like the states
         integer :: k
 
+        mixed%drive_work = dot_product(weights, states%drive_work)
+        mixed%damped = dot_product(weights, states%damped)
         mixed%x(:) = weights(1) * states(1)%x
         mixed%v(:) = weights(1) * states(1)%v
         mixed%friction(:) = weights(1) * states(1)%friction
@@ -340,6 +344,8 @@ contains
         to%time = from%time
         to%drive = from%drive
         to%normal = from%normal
+        to%drive_work = from%drive_work
+        to%damped = from%damped
         call move_alloc(from%x, to%x)
         call move_alloc(from%v, to%v)
         call move_alloc(from%a, to%a)
@@ -348,38 +354,27 @@ contains
         call move_alloc(from%statev, to%statev)
     end subroutine move_state
 
-    !> Books the step from `old` to `new`: works by the mean force over the step, or by Simpson's
-    !> rule if the state half-way is known.
-    pure subroutine account(self, old, new, energy, middle)
+    !> Books the work of the drive and what the dampers took from `old` to `new`, by the mean forces
+    !> over the step.
+    pure subroutine account(self, old, new)
         class(slider), intent(in) :: self
-        type(slider_state), intent(in) :: old, new
-        type(energy_balance), intent(inout) :: energy
-        type(slider_state), intent(in), optional :: middle
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
         real(dp) :: pull, drag   ! sums over the blocks [F], [L^2/T]
         integer :: i
 
         pull = 0.0_dp
         drag = 0.0_dp
-        if (present(middle)) then
-            energy%drive_work = energy%drive_work + (sum(old%spring) &
-                * (4.0_dp * middle%drive - 3.0_dp * old%drive - new%drive) &
-                + 4.0_dp * sum(middle%spring) * (new%drive - old%drive) + sum(new%spring) &
-                * (old%drive - 4.0_dp * middle%drive + 3.0_dp * new%drive)) / 6.0_dp
-            energy%damped = energy%damped + self%damping * (new%time - old%time) &
-                * sum(old%v**2 + 4.0_dp * middle%v**2 + new%v**2) / 6.0_dp
-        else
-            do i = 1, size(new%x)
-                pull = pull + (old%spring(i) + new%spring(i))
-                drag = drag + (old%v(i) + new%v(i)) * (new%x(i) - old%x(i))
-            end do
-            energy%drive_work = energy%drive_work + 0.5_dp * pull * (new%drive - old%drive)
-            energy%damped = energy%damped + 0.5_dp * self%damping * drag
-        end if
-        call self%take_stock(new, energy)
+        do i = 1, size(new%x)
+            pull = pull + (old%spring(i) + new%spring(i))
+            drag = drag + (old%v(i) + new%v(i)) * (new%x(i) - old%x(i))
+        end do
+        new%drive_work = old%drive_work + 0.5_dp * pull * (new%drive - old%drive)
+        new%damped = old%damped + 0.5_dp * self%damping * drag
     end subroutine account
 
-    !> Energies that a state holds: of the motion, of the springs, of the contact; and what it has
-    !> dissipated. All in one loop: a sum waits for each addition, four wait together.
+    !> Energies that a state holds: of the motion, of the springs, of the contact; and what has come
+    !> and gone. All in one loop: a sum waits for each addition, four wait together.
     pure subroutine take_stock(self, state, energy)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: state
@@ -401,6 +396,8 @@ contains
         energy%spring = 0.5_dp * springs / self%stiffness + self%coupling_energy(state%x)
         energy%contact = 0.5_dp * self%area * self%props(3) * contact
         energy%dissipated = self%area * dissipated
+        energy%drive_work = state%drive_work
+        energy%damped = state%damped
     end subroutine take_stock
 
     !> Held by the springs, the contact and the motion together.

@@ -168,18 +168,18 @@ contains
 
         drive = self%origin + self%drive%position(time)
         normal = self%drive%normal_traction(time, piece)
-        if (size(old%x) > 1) then
-            call self%blocks%step(self%method, self%system, drive, normal, time - old%time, old, &
-                new, report, guess)
-        else if (.not. self%exponential) then
-            call self%method%step(self%system, drive, normal, time - old%time, old, new, report, &
-                guess)
-        else if (present(guess)) then
+        if (self%exponential) then
             call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
-                present(first), guess(1))
+                present(first), guess)
         else
-            call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
-                present(first))
+            if (size(old%x) > 1) then
+                call self%blocks%step(self%method, self%system, drive, normal, time - old%time, &
+                    old, new, report, guess)
+            else
+                call self%method%step(self%system, drive, normal, time - old%time, old, new, &
+                    report, guess)
+            end if
+            if (report%status >= 0) call self%system%account(old, new)
         end if
         new%time = time
         self%iterations = self%iterations + report%iterations

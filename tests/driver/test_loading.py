@@ -199,6 +199,19 @@ class AdaptiveSteps(Columns):
                 for rtol in ('1e-5', '1e-7')]
         self.assertLess(rest[1], 0.3 * rest[0])
 
+    def test_energy_balance_closes_in_steps_longer_than_the_oscillation(self):
+        # A Coulomb contact takes a few dozen steps, each of many oscillations that the damper ends: its work is no
+        # sum over steps. Each step may be wrong by rtol of the friction force, over the way of a step.
+        text = namelist({('time', 'rtol'): '1e-7', ('time', 't_end'): '10'}, [('friction', None), ('time', 'dt')])
+        text += "&friction law = 'coulomb', alpha_n = 1000, alpha_t = 1000, mu = 0.3 /\n"
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 100)
+        work, unbalanced = (float(result.stdout.split(key)[1].split()[0])
+                            for key in ('work of the drive', 'unbalanced'))
+        self.assertGreater(float(result.stdout.split('damped')[1].split()[0]), 1e-3 * work)
+        self.assertLess(abs(unbalanced), 1e-7 * work)
+
     def test_steps_end_where_pieces_of_the_programme_end(self):
         run = self.run_columns(namelist({('drive', 'velocity'): '1, -2, 0', ('drive', 'duration'): '3*0.03',
                                          ('time', 'rtol'): '1e-6'}, [('time', 'dt')]))
