@@ -127,7 +127,8 @@ contains
         associate (d => run%drive, start => run%initial, c => run%chain)
             call mix([run%props, run%mass, run%stiffness, run%damping, run%area, run%t_end, &
                 run%dt, run%rtol, run%dt_min, run%dt_max, run%beta, run%gamma, run%rho_infinity, &
-                run%tolerance, real(run%max_iterations, dp), real(run%interval, dp), start%mu, &
+                run%tolerance, real(run%max_iterations, dp), real(run%interval, dp), run%every, &
+                start%mu, &
                 start%r, start%displacement, start%velocity, start%spring_force], mixed)
             call mix([real(c%n_blocks, dp), c%coupling, real(c%ends, dp), c%scatter, &
                 real(c%seed, dp), c%slip_rate, real(run%fields, dp)], mixed)

@@ -174,7 +174,8 @@ contains
             '             or file; normal_change, normal_amplitude, _frequency, _phase', &
             '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
             '             max_iterations (25); adaptive with rtol, dt_min, dt_max; rho_infinity', &
-            '  &output    interval (1): steps between two rows; checkpoint (60) [s]', &
+            '  &output    interval (1): steps between two rows, or every: time between them [T];', &
+            '             checkpoint (60) [s]', &
             '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &
             '  all of them: docs/driver.md', &
             'and of point, beside &friction (docs/point_mode.md):', &

@@ -33,6 +33,7 @@ module run_settings
         real(dp) :: tolerance               !! of the force residual, relative to the largest force
         integer :: max_iterations           !! of Newton's method in a step
         integer :: interval                 !! steps between two rows of the CSV file
+        real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
         integer :: fields                   !! steps between two pictures of the chain; 0: none
         integer :: n_steps                  !! follows from t_end and dt
     end type settings
@@ -69,12 +70,30 @@ contains
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
         if (file%has_group('output')) continue
-        call file%get_integer('output', 'interval', run%interval, at_least(1.0_dp), default=1)
+        call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
             default=60.0_dp)
         call read_fields(file, run)
         call file%refuse_unknown()
     end subroutine read_settings
+
+    !> When rows of the time series are due.
+    subroutine read_rows(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'output'
+        real(dp), parameter :: most_rows = 1.0e9_dp
+
+        call file%get_integer(group, 'interval', run%interval, at_least(1.0_dp), default=1)
+        if (.not. file%given(group, 'every')) return
+        call file%get_real(group, 'every', run%every, above(0.0_dp))
+        if (.not. run%adaptive) call file%reject(group, 'every', 'needs &time rtol')
+        if (file%given(group, 'interval')) call file%reject(group, 'every', &
+            'give it or interval, not both')
+        if (run%every > 0.0_dp .and. run%every * most_rows < run%t_end) call file%reject(group, &
+            'every', 'makes more rows than can be counted')
+        run%interval = huge(run%interval)
+    end subroutine read_rows
 
     !> Slip of a chain's block counts as an event's from a part of the velocity on that a block
     !> reaches when friction falls from static to kinetic.

@@ -64,7 +64,7 @@ contains
                 live%result%snap_backs + 1
             live%result%steps = live%result%steps + 1
             if (complete) live%rows_due = live%rows_due + 1
-            if (live%rows_due == run%interval .or. live%steps%finished(new)) call record(new)
+            if (row_is_due(new)) call record(new)
             if (live%rows_due == run%interval) live%rows_due = 0
             call record_fields(live%state, new)
             call watch(live%state, new)
@@ -83,6 +83,16 @@ contains
         result%time = live%state%time
 
     contains
+
+        function row_is_due(state) result(due)
+            type(slider_state), intent(in) :: state
+            logical :: due
+            real(dp), parameter :: round_off = 1.0e-6_dp
+
+            due = live%rows_due == run%interval .or. live%steps%finished(state)
+            if (run%every > 0.0_dp) due = due .or. abs(state%time / run%every &
+                - anint(state%time / run%every)) < round_off
+        end function row_is_due
 
         !> A checkpoint, if it is time for one.
         subroutine keep()

@@ -38,6 +38,7 @@ module step_control
         integer :: iterations = 0, most_iterations = 0   !! of Newton's method, the latter in a step
         ! of adaptive steps alone
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
+        real(dp) :: every = 0.0_dp     !! steps end at multiples of this time, unless it is 0 [T]
         logical :: exponential = .false.   !! steps by the exponential rule, not by `method`
         type(exponential) :: rule
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
@@ -82,6 +83,7 @@ contains
         if (.not. run%adaptive) return
         self%dt_min = run%dt_min
         self%dt_max = run%dt_max
+        self%every = run%every
         self%order = run%order
         self%pressing = run%area * run%drive%largest_normal()
         self%tolerated = run%rtol * max(typical_coefficient(run%props) * self%pressing, &
@@ -234,7 +236,7 @@ contains
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
-        limit = min(self%drive%next_start(old%time), self%t_end)
+        limit = min(self%drive%next_start(old%time), self%t_end, next_row(self%every, old%time))
         call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old)
         if (self%exponential) call expect_stick_after_turn(self%system, old, self%rule%contact)
         event = huge(event)
@@ -275,6 +277,16 @@ contains
         self%last_error = error
         call self%extrapolate(end - old%time, new)
     end subroutine take_adaptive_step
+
+    !> The first multiple of `every` after a time; huge if there is none.
+    pure function next_row(every, time) result(next)
+        real(dp), intent(in) :: every, time   !! [T]
+        real(dp) :: next                      !! [T]
+        real(dp), parameter :: round_off = 1.0e-6_dp
+
+        next = huge(next)
+        if (every > 0.0_dp) next = every * (aint(time / every + round_off) + 1.0_dp)
+    end function next_row
 
     !> A block that has just turned round is carried elastically at first.
     pure subroutine expect_stick_after_turn(system, state, contact)

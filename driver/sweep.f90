@@ -78,6 +78,7 @@ contains
         do i = 1, size(plan%runs)
             call plan%runs(i)%drive%divide(late_from(plan%runs(i)))
             plan%runs(i)%interval = huge(plan%runs(i)%interval)   ! no series is kept
+            plan%runs(i)%every = 0.0_dp
         end do
     end subroutine read_plan
 

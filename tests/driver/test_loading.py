@@ -218,6 +218,23 @@ class AdaptiveSteps(Columns):
         for t in (0.03, 0.06, 0.1):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-15)
 
+    def test_rows_come_at_even_times_and_do_not_change_the_events(self):
+        text = namelist({('time', 't_end'): '5', ('time', 'rtol'): '1e-8', ('friction', 'scheme'): "'exact_rate'",
+                         ('output', 'every'): '0.07'}, [('time', 'dt')])
+        run = self.run_columns(text)
+        self.assertEqual(len(run['time']), 73)   # 0 to 71 times 0.07, and the end
+        for k, time in enumerate(run['time'][:-1]):
+            self.assertAlmostEqual(time, 0.07 * k, delta=1e-14)
+        onset = float(self.rows('case_out/case_events.csv')[0]['onset'])
+        self.assertAlmostEqual(onset, 3.98783113667, delta=1e-6)   # as above
+
+    def test_bad_times_of_rows(self):
+        self.refused(namelist({('output', 'every'): '0.1'}), '&output every = 0.1: needs &time rtol')
+        self.refused(namelist({('output', 'every'): '-1', ('time', 'rtol'): '1e-6'}), '&output every = -1: must be > 0')
+        self.refused(namelist({('output', 'every'): '1e-12', ('output', 'interval'): '2', ('time', 'rtol'): '1e-6'}),
+                     '&output every = 1e-12: give it or interval, not both',
+                     '&output every = 1e-12: makes more rows than can be counted')
+
     def test_steps_stay_within_their_bounds(self):
         run = self.run_columns(namelist({('time', 'rtol'): '1e-3', ('time', 'dt_max'): '2e-3'}, [('time', 'dt')]))
         steps = [b - a for a, b in zip(run['time'], run['time'][1:])]
