@@ -216,6 +216,11 @@ class BadInput(Sweep):
                             '&slider mass = -1: must be >= 0', '&friction m: is missing')
         self.assertEqual(len(said.splitlines()), 2, said)
 
+    def test_groups_and_drive_that_are_missing(self):
+        self.refused(sweep('friction%m', '1, 2', without=[('drive', None)]), 'group &drive is missing')
+        self.refused(sweep('friction%m', '1, 2', without=[('drive', 'velocity')]),
+                     '&drive velocity: is missing')
+
     def test_a_run_does_not_take_a_sweep(self):
         result = self.run_text(sweep('drive%velocity', '1'))
         self.assertEqual(result.returncode, 2)
