@@ -21,9 +21,10 @@ contains
         end do
         write (output_unit, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
-        write (output_unit, '(2a, a, i0)') 'Newton iterations  ', &
-            trim(per_step(result%iterations, result%steps)), ' a step, most ', &
-            result%most_iterations
+        write (output_unit, '(4a, i0)') 'Newton iterations  ', &
+            trim(per_step(result%iterations, result%steps)), ' a step', &
+            trim(merge(' with all its parts, most in a part', ', most                             ', &
+            run%adaptive)) // ' ', result%most_iterations
         if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
             result%rejected
         if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
@@ -50,7 +51,10 @@ contains
 
         if (size(onsets) /= size(tighter)) write (output_unit, '(a, i0, a, i0)') &
             'events             ', size(onsets), '; by the tighter run ', size(tighter)
-        if (size(apart) == 0) return
+        if (size(apart) == 0) then
+            write (output_unit, '(a)') 'event-time error   -            no events to compare'
+            return
+        end if
         apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
         write (output_unit, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
             ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'
