@@ -50,7 +50,8 @@ contains
         end select
         call read_options(file, options)
         props = [real(number, dp), alpha_n, alpha_t, own, options]
-        if (size(file%faults) == faults_before) call try_props(file, props)
+        if (size(file%faults) == faults_before .and. file%has_group(group)) call try_props(file, &
+            props)
     end subroutine read_friction
 
     !> Options that every law has: shear cap, orthotropy.

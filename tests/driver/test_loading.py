@@ -268,6 +268,8 @@ class AdaptiveSteps(Columns):
     def test_bad_keys_of_adaptive_steps_and_damping(self):
         self.refused(namelist({('time', 'dt_min'): '1', ('time', 'dt_max'): '1'}),
                      '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
+        self.refused(namelist({('time', 'rtol'): '1'}), '&time rtol = 1: must be from 1e-12 to 0.1\n')
+        self.refused(namelist({('time', 'beta'): '0'}), '&time beta = 0: must be from 0.01 to 1\n')
         self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
                      '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
         self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
@@ -280,7 +282,8 @@ class BadProgramme(Columns):
     def test_files_that_are_no_programme(self):
         for content, said in (
                 ('', 'is empty'),
-                ('time,velocity\n', 'less than two rows'),
+                ('time,velocity\n', 'fewer than two rows'),
+                ('time;velocity\n0;1\n1;1\n', 'line 1: the cells must be separated by commas'),
                 ('time,speed\n0,1\n1,1\n', "line 1: column 'speed' is none of"),
                 ('time,velocity,time\n0,1,0\n1,1,1\n', "column 'time' is given twice"),
                 ('velocity,normal\n0,1\n1,1\n', "line 1: column 'time' is missing"),
@@ -300,6 +303,12 @@ class BadProgramme(Columns):
         result = self.run_text(self.with_file('time,velocity\n' + 'x,y\n' * 100), verb='check')
         self.assertGreater(len(result.stderr.splitlines()), 15)
         self.assertLess(len(result.stderr.splitlines()), 25)
+
+    def test_a_key_that_has_no_place_is_not_unknown_as_well(self):
+        for text in (namelist({('time', 'dt_min'): '1'}),
+                     self.with_file('time,velocity\n0,1\n1,1\n').replace('file =', 'normal_change = "ramp"\n file =')):
+            said = self.run_text(text, verb='check').stderr
+            self.assertEqual(len(said.splitlines()), 1, said)
 
     def test_file_that_is_not_there_and_lists_beside_it(self):
         self.refused(namelist({('drive', 'file'): "'none.csv'", ('drive', 'duration'): '1'}),
