@@ -56,7 +56,7 @@ module namelist_input
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
-        procedure :: substitute, remove, listing
+        procedure :: substitute, value_of, remove, listing
     end type namelist_file
 
 contains
@@ -824,6 +824,20 @@ contains
         seen%line = entry%line
         self%groups = [self%groups, seen]
     end subroutine substitute
+
+    !> The first value of a key as the file has it; empty if it has none.
+    pure function value_of(self, group, key) result(text)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=:), allocatable :: text
+        integer :: i
+
+        text = ''
+        do i = 1, size(self%entries)
+            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            if (size(self%entries(i)%values) > 0) text = shown(self%entries(i)%values(1))
+        end do
+    end function value_of
 
     !> Forgets all assignments to a key.
     subroutine remove(self, group, key)

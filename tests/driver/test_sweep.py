@@ -201,6 +201,11 @@ class BadInput(Sweep):
                      '&sweep values = NaN: must be finite')
         self.refused(sweep('output%interval', '1, 1.5'), '&output interval', 'must be a whole number')
 
+    def test_values_that_break_the_rule_of_another_key_are_told(self):
+        said = self.refused(sweep('friction%mu_k', '0.1, 0.5, 0.7'),
+                            '&friction mu_s = 0.4: must be >= mu_k (at friction%mu_k = 0.5)')
+        self.assertEqual(len(said.splitlines()), 1, said)
+
     def test_keys_that_are_not_numbers(self):
         self.refused(sweep('friction%law', '1, 2'), '&friction law = 1: must be text in quotes')
 
