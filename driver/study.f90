@@ -132,7 +132,7 @@ contains
         call records%finish()
         if (records%failed() .and. len(result%failure) == 0) result%failure = &
             'at its end: cannot write the last rows (disk full?)'
-        if (.not. wanted%quiet) call print_summary(run, result)
+        if (.not. wanted%quiet) call print_summary(run, result, base // '.csv')
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
         exit_status = exit_done

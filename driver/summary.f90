@@ -10,9 +10,10 @@ module summary
 
 contains
 
-    subroutine print_summary(run, result)
+    subroutine print_summary(run, result, table)
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
+        character(len=*), intent(in) :: table   !! name of the file with the time series
         type(event_totals) :: all
         integer :: i
 
@@ -42,6 +43,7 @@ contains
         call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')
         if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
         call print_energy(result)
+        write (output_unit, '(2a)') 'table              ', table
     end subroutine print_summary
 
     !> How far the events of a run are from those of a tighter one.

@@ -97,6 +97,7 @@ class GoodInput(Program):
         events = (self.folder / 'case_out/case_events.csv').read_text()
         self.assertEqual(events, 'onset,duration,stress_drop,slip,peak_velocity,recurrence_time\n')
         self.assertIn('unbalanced', result.stdout)
+        self.assertIn('table              case_out/case.csv', result.stdout)
         self.assertFalse((self.folder / 'case_out/case.png').exists())
 
     def test_every_row_obeys_the_equation_of_motion(self):
