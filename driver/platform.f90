@@ -7,8 +7,8 @@ module platform
     private
 
     public :: cores, exit_program, have_command, interrupted, is_directory, is_terminal, &
-        make_directory, remove_file, rename_file, run_in_directory, seconds, shell_word, truncate_file, &
-        watch_for_interrupts
+        make_directory, remove_file, rename_file, run_in_directory, seconds, shell_word, &
+        truncate_file, watch_for_interrupts
 
     ! A signal handler can leave its message nowhere else.
     logical, volatile :: was_interrupted = .false.

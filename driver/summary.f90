@@ -15,6 +15,7 @@ contains
         type(outcome), intent(in) :: result
         character(len=*), intent(in) :: table   !! name of the file with the time series
         type(event_totals) :: all
+        character(len=:), allocatable :: most
         integer :: i
 
         do i = 1, size(result%pieces)
@@ -22,10 +23,11 @@ contains
         end do
         write (output_unit, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
+        most = ', most '
+        if (run%adaptive) most = ' with all its parts, most in a part '
         write (output_unit, '(4a, i0)') 'Newton iterations  ', &
-            trim(per_step(result%iterations, result%steps)), ' a step', &
-            trim(merge(' with all its parts, most in a part', ', most                             ', &
-            run%adaptive)) // ' ', result%most_iterations
+            trim(per_step(result%iterations, result%steps)), ' a step', most, &
+            result%most_iterations
         if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
             result%rejected
         if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
