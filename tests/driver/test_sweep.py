@@ -230,6 +230,7 @@ class BadInput(Sweep):
         result = self.run_text(sweep('drive%velocity', '1'))
         self.assertEqual(result.returncode, 2)
         self.assertIn('&sweep: unknown group', result.stderr)
+        self.assertIn('stickslip sweep case.nml', result.stderr)
 
     def test_bad_usage(self):
         for arguments in (['sweep'], ['sweep', 'a.nml', '--jobs'], ['sweep', 'a.nml', '--jobs', '0'],
