@@ -328,6 +328,17 @@ class BadProgramme(Columns):
     def test_a_law_without_r_refuses_an_initial_r(self):
         self.refused(law_namelist('rate_and_state') + '&initial r=0.5 /', '&initial r = 0.5: belongs to the law subloading')
 
+    def test_an_initial_friction_beyond_the_strength_is_refused(self):
+        for law in ('coulomb', 'static_kinetic', 'slip_weakening'):
+            self.refused(law_namelist(law) + '&initial mu=0.41 /',
+                         '&initial mu = 0.41: must not exceed the static friction coefficient')
+        self.refused(law_namelist('rate_and_state', tau_max='2') + '&initial mu=0.3 /',
+                     '&initial mu = 0.3: makes a friction force above tau_max')
+        self.refused(namelist({('friction', 'tau_max'): '2', ('initial', 'r'): '0.8', ('initial', 'mu'): '0.3'}),
+                     '&initial r = 0.8: makes a friction force above tau_max')
+        result = self.run_text(law_namelist('coulomb', tau_max='3') + '&initial mu=0.3 /', '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_initial_values_out_of_range(self):
         self.refused(namelist({('initial', 'mu'): '0.1', ('initial', 'r'): '1.1',
                                ('initial', 'velocity'): 'NaN', ('initial', 'speed'): '1'}),
