@@ -148,6 +148,15 @@ class QuasiStatic(Columns):
         self.assertRegex(result.stderr, r'the run failed at time  ?[\d.E+]+, step \d+: the slider is unstable')
         self.assertGreater(len(self.rows('case_out/case.csv')), 10)
 
+    def test_a_surface_that_weakens_with_slip_is_unstable_in_the_same_words(self):
+        changes = {('slider', 'mass'): '0', ('slider', 'damping'): '0', ('slider', 'stiffness'): '100', ('drive', 'velocity'): '0.1',
+                   ('time', 't_end'): '1'}
+        text = namelist(changes, [('friction', None)]) + ("&friction law='slip_weakening', alpha_n=1000, alpha_t=1000, "
+                                                          'mu_s=0.4, mu_k=0.2, d_c=0.01 /\n')
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('the slider is unstable without inertia', result.stderr)
+
     def test_stiffness_at_which_the_slider_becomes_unstable(self):
         # theory.md, section 6, at mu_ss: unstable iff K k_t/(K + k_t) < A
         a = 10 * 10 * ((10 * 0.1 * 0.2 + 0.4) / 2 - 0.2)
