@@ -391,7 +391,7 @@ class FailedRun(Program):
         result = self.run_text(namelist({('time', 't_end'): '10', ('time', 'dt'): '0.05',
                                          ('time', 'max_iterations'): '4'}), '--no-plot')
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: ')
+        self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: .* take a smaller dt')
         self.assertGreater(len(self.rows('case_out/case.csv')), 5)
 
     def test_a_full_disk_is_a_failed_run(self):
