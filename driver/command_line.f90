@@ -76,6 +76,8 @@ contains
         end do
         if (len(wanted%problem) > 0) return
         if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
+        if (wanted%verb /= 'run' .and. (wanted%resume .or. wanted%verify)) wanted%problem = &
+            '--resume and --verify are for run'
         if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
             .or. .not. wanted%plot .or. wanted%resume &
             .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
@@ -87,6 +89,7 @@ contains
         type(command), intent(inout) :: wanted
         character(len=*), intent(in) :: word
 
+        if (len(wanted%problem) > 0) return   ! the first mistake is the one to tell
         if (index(word, '-') == 1) then
             wanted%problem = "unknown option '" // word // "'"
         else if (len(wanted%input) > 0) then
@@ -166,7 +169,10 @@ contains
             '', &
             'Groups and keys of INPUT.nml, (default), [unit] of force F, length L, time T:', &
             '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
-            '             kappa [1/L], xi [1/T], m [1/L], mu_0 (mu_s) [-]', &
+            '             kappa [1/L], xi [1/T], m [1/L], mu_0 (mu_s) [-];', &
+            '             scheme, u_of_r, tau_max [F/L^2], mu_ratio, direction;', &
+            '             laws coulomb, static_kinetic, rate_and_state, slip_weakening have keys', &
+            '             of their own', &
             '  &slider    mass [F T^2/L], stiffness [F/L], damping (0) [F T/L], area (1) [L^2],', &
             '             normal_traction [F/L^2]', &
             '  &drive     velocity [L/T], duration [T], normal (normal_traction) [F/L^2]:', &
@@ -175,8 +181,10 @@ contains
             '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
             '             max_iterations (25); adaptive with rtol, dt_min, dt_max; rho_infinity', &
             '  &output    interval (1): steps between two rows, or every: time between them [T];', &
-            '             checkpoint (60) [s]', &
+            '             fields (0): of a chain; checkpoint (60) [s]', &
             '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &
+            '  &chain     n_blocks, coupling [F/L], ends (''free''), scatter (0), seed (1),', &
+            '             slip_rate [L/T]', &
             '  all of them: docs/driver.md', &
             'and of point, beside &friction (docs/point_mode.md):', &
             '  &point     ndir (3), cycles (1), tangent (.false.), and a path, either', &
@@ -184,6 +192,7 @@ contains
             '             (''displacement'' or ''traction''), target_n, target_t1, target_t2', &
             '             [L] or [F/L^2]: lists, the i-th values belong to segment i;', &
             '             or file = CSV with time and u_ or t_ columns, substeps (1)', &
+            'and of sweep, beside the groups of a run (docs/sweeps.md):', &
             '  &sweep     key (''group%key''), values: list; key2, values2: a second key', &
             '', &
             'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'

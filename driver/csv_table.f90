@@ -5,6 +5,7 @@ module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end
     use namelist_input, only : read_number
+    use platform, only : is_directory
     implicit none
     private
 
@@ -38,6 +39,10 @@ contains
         integer :: unit, status, number, rows
 
         allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
+        if (is_directory(path)) then
+            call read_in%add_fault(0, 'is a directory')
+            return
+        end if
         open (newunit=unit, file=path, status='old', action='read', iostat=status, iomsg=message)
         if (status /= 0) then
             call read_in%add_fault(0, trim(message))
@@ -54,6 +59,10 @@ contains
             if (line(line_length:) /= ' ') then
                 call read_in%add_fault(number, 'the line is too long')
             else if (size(read_in%names) == 0) then
+                if (scan(line, ';' // achar(9)) > 0 .and. index(line, ',') == 0) then
+                    call read_in%add_fault(number, 'the cells must be separated by commas')
+                    exit
+                end if
                 call take_header(line, read_in)
             else
                 call take_row(line, number, rows, read_in)

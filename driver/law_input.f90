@@ -10,7 +10,8 @@ module law_input
     implicit none
     private
 
-    public :: healing_rate, is_subloading, kinetic_coefficient, read_friction, typical_coefficient
+    public :: healing_rate, is_subloading, kinetic_coefficient, read_friction, shear_cap, &
+        static_coefficient, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -50,7 +51,8 @@ contains
         end select
         call read_options(file, options)
         props = [real(number, dp), alpha_n, alpha_t, own, options]
-        if (size(file%faults) == faults_before) call try_props(file, props)
+        if (size(file%faults) == faults_before .and. file%has_group(group)) call try_props(file, &
+            props)
     end subroutine read_friction
 
     !> Options that every law has: shear cap, orthotropy.
@@ -97,6 +99,24 @@ contains
         mu = props(4)
         if (nint(props(1)) == law_rate_state) mu = max(mu, props(8))
     end function typical_coefficient
+
+    !> The most that friction can be while the surface rests; infinite where there is no such bound.
+    pure function static_coefficient(props) result(mu)
+        real(dp), intent(in) :: props(:)   !! of the friction routine
+        real(dp) :: mu                     !! [-]
+
+        mu = props(4)
+        if (nint(props(1)) == law_rate_state) mu = huge(mu)
+    end function static_coefficient
+
+    !> The shear cap, huge without one.
+    pure function shear_cap(props) result(tau_max)
+        real(dp), intent(in) :: props(:)   !! as `read_friction` makes them
+        real(dp) :: tau_max                !! [F/L^2]
+
+        tau_max = props(size(props) - 2)   ! after it mu_ratio and direction
+        if (tau_max <= 0.0_dp) tau_max = huge(tau_max)
+    end function shear_cap
 
     !> The friction coefficient that is left when the surface has slid far, where that is a constant
     !> of the law; else the static one.

@@ -211,7 +211,7 @@ contains
             character(len=*), intent(in) :: key
             integer, intent(in) :: length
 
-            if (length == n .or. (length == 1 .and. size(duration) == n)) return
+            if (length == n .or. length == 1) return
             call file%reject(group, key, 'must have one value or ' // counted(n) &
                 // ', as many as the other lists')
         end subroutine check_length
@@ -292,7 +292,7 @@ contains
         if (rows%column('velocity') == 0 .eqv. rows%column('displacement') == 0) then
             call rows%add_fault(1, "takes one of the columns 'velocity' and 'displacement'")
         end if
-        if (size(rows%lines) < 2) call rows%add_fault(0, 'has less than two rows of numbers')
+        if (size(rows%lines) < 2) call rows%add_fault(0, 'has fewer than two rows of numbers')
     end subroutine check_columns
 
     subroutine check_rows(rows)

@@ -7,6 +7,7 @@
 module namelist_input
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_overflow, ieee_set_halting_mode
     use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end, iostat_eor
+    use platform, only : is_directory
     implicit none
     private
 
@@ -55,7 +56,7 @@ module namelist_input
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
-        procedure :: substitute, remove, listing
+        procedure :: substitute, value_of, remove, listing
     end type namelist_file
 
 contains
@@ -116,6 +117,10 @@ contains
 
         text = ''
         problem = ''
+        if (is_directory(name)) then
+            problem = 'is a directory'
+            return
+        end if
         open (newunit=unit, file=name, status='old', action='read', iostat=status, iomsg=message)
         if (status /= 0) then
             problem = trim(message)
@@ -712,7 +717,7 @@ contains
         end do
     end subroutine require
 
-    !> Notes a fault of a key, with its value and the rule that it breaks.
+    !> Notes a fault of a key, with its value and the rule that it breaks. That key is known then.
     subroutine reject(self, group, key, why, token)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key, why
@@ -724,6 +729,7 @@ contains
         value = ''
         do i = 1, size(self%entries)
             if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            self%entries(i)%known = .true.
             line = self%entries(i)%line
             if (size(self%entries(i)%values) == 1) value = shown(self%entries(i)%values(1))
         end do
@@ -818,6 +824,20 @@ contains
         seen%line = entry%line
         self%groups = [self%groups, seen]
     end subroutine substitute
+
+    !> The first value of a key as the file has it; empty if it has none.
+    pure function value_of(self, group, key) result(text)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=:), allocatable :: text
+        integer :: i
+
+        text = ''
+        do i = 1, size(self%entries)
+            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            if (size(self%entries(i)%values) > 0) text = shown(self%entries(i)%values(1))
+        end do
+    end function value_of
 
     !> Forgets all assignments to a key.
     subroutine remove(self, group, key)
@@ -931,15 +951,23 @@ contains
     end function whole
 
     !> A number with no more digits than it needs.
-    pure function short(number) result(text)
+    pure recursive function short(number) result(text)
         real(dp), intent(in) :: number
         character(len=:), allocatable :: text
         character(len=24) :: buffer
+        integer :: exponent
 
-        write (buffer, '(f0.3)') number
-        if (abs(number - anint(number)) <= 0.0_dp) write (buffer, '(i0)') nint(number)
-        text = trim(buffer)
-        if (text(1:1) == '.') text = '0' // text
+        if (abs(number - anint(number)) <= 0.0_dp) then
+            text = whole(nint(number))
+        else if (abs(number) < 1.0e-3_dp) then
+            exponent = floor(log10(abs(number)) + 1.0e-9_dp)
+            text = short(1.0e-3_dp * anint(1.0e3_dp * number / 10.0_dp**exponent)) // 'e' &
+                // whole(exponent)
+        else
+            write (buffer, '(f24.3)') number
+            text = trim(adjustl(buffer))
+            text = text(:verify(text, '0', back=.true.))
+        end if
     end function short
 
 end module namelist_input

@@ -6,9 +6,9 @@ module platform
     implicit none
     private
 
-    public :: cores, exit_program, have_command, interrupted, is_terminal, make_directory, &
-        remove_file, rename_file, run_in_directory, seconds, shell_word, truncate_file, &
-        watch_for_interrupts
+    public :: cores, exit_program, have_command, interrupted, is_directory, is_terminal, &
+        make_directory, remove_file, rename_file, run_in_directory, seconds, shell_word, &
+        truncate_file, watch_for_interrupts
 
     ! A signal handler can leave its message nowhere else.
     logical, volatile :: was_interrupted = .false.
@@ -128,6 +128,14 @@ contains
 
         terminal = c_isatty(2_c_int) == 1
     end function is_terminal
+
+    !> Is there a directory of this name? Opened as a file, one looks like an empty file.
+    function is_directory(path) result(yes)
+        character(len=*), intent(in) :: path
+        logical :: yes
+
+        inquire (file=path // '/.', exist=yes)
+    end function is_directory
 
     !> Makes a directory and those above it, where they do not exist; tells whether it can be
     !> written to.

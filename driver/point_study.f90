@@ -99,7 +99,7 @@ contains
         call records%file%finish()
         if (records%file%failed .and. len(result%failure) == 0) result%failure = &
             'at its end: cannot write the last rows (disk full?)'
-        if (.not. wanted%quiet) call print_summary(point, result)
+        if (.not. wanted%quiet) call print_summary(point, result, base // '.csv')
         exit_status = exit_done
         if (len(result%failure) > 0) then
             call tell_failure(wanted%input, result%failure, base)
@@ -187,9 +187,10 @@ contains
         if (value > highest%value) highest = peak(value, time)
     end subroutine raise
 
-    subroutine print_summary(point, result)
+    subroutine print_summary(point, result, table)
         type(contact_point), intent(in) :: point
         type(outcome), intent(in) :: result
+        character(len=*), intent(in) :: table   !! name of the file with the rows
         real(dp) :: dissipated
 
         dissipated = point%statev(statev_dissipation)
@@ -211,6 +212,7 @@ contains
         write (output_unit, '(a, es14.6)') '  dissipated       ', dissipated
         write (output_unit, '(a, es14.6)') '  unbalanced       ', &
             point%work - point%stored() - dissipated
+        write (output_unit, '(2a)') 'table              ', table
     end subroutine print_summary
 
     subroutine print_peak(title, highest)

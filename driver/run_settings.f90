@@ -3,7 +3,8 @@ module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_settings, only : chain, read_chain
     use field_file, only : netcdf_available
-    use law_input, only : is_subloading, kinetic_coefficient, read_friction, typical_coefficient
+    use law_input, only : is_subloading, kinetic_coefficient, read_friction, shear_cap, &
+        static_coefficient, typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use recorder, only : most_in_csv
@@ -168,12 +169,17 @@ contains
                 key = 'mu'
                 call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=0.0_dp)
                 start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
+                if (start%mu > static_coefficient(props)) call file%reject(group, 'mu', &
+                    'must not exceed the static friction coefficient')
                 if (file%given(group, 'r')) call file%reject(group, 'r', &
                     'belongs to the law subloading')
             end if
             if (.not. allocated(run%drive%normal)) return
             if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
                 call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
+            end if
+            if (start%r * start%mu * run%drive%normal_traction(0.0_dp, 1) > shear_cap(props)) then
+                call file%reject(group, key, 'makes a friction force above tau_max')
             end if
         end associate
     end subroutine read_initial_friction

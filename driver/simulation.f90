@@ -259,6 +259,9 @@ contains
                 // 'unloads. Give it a mass to see the jump, or a stiffer spring'
         else if (run%adaptive) then
             why = 'not within the tolerance by steps as short as dt_min'
+        else
+            why = 'Newton''s method finds no balance of forces at the end of the step: take a ' &
+                // 'smaller dt, or adaptive steps (rtol)'
         end if
     end function why_stopped
 

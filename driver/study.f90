@@ -41,6 +41,8 @@ contains
         end if
         if (size(file%faults) > 0) then
             write (error_unit, '(a)', advance='no') file%describe_faults()
+            if (file%has_group('point')) call tell_verb('point', wanted%input)
+            if (.not. swept .and. file%has_group('sweep')) call tell_verb('sweep', wanted%input)
             return
         end if
         exit_status = exit_done
@@ -54,6 +56,14 @@ contains
             write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', run%n_steps, ' steps'
         end if
     end subroutine check_input
+
+    !> An input of another verb was given.
+    subroutine tell_verb(verb, input)
+        character(len=*), intent(in) :: verb, input
+
+        write (error_unit, '(6a)') 'stickslip: for the group &', verb, ': stickslip ', verb, ' ', &
+            input
+    end subroutine tell_verb
 
     !> Reads a file, or says why it cannot be read.
     function is_readable(name, file) result(readable)
@@ -132,7 +142,7 @@ contains
         call records%finish()
         if (records%failed() .and. len(result%failure) == 0) result%failure = &
             'at its end: cannot write the last rows (disk full?)'
-        if (.not. wanted%quiet) call print_summary(run, result)
+        if (.not. wanted%quiet) call print_summary(run, result, base // '.csv')
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
         exit_status = exit_done

@@ -10,10 +10,12 @@ module summary
 
 contains
 
-    subroutine print_summary(run, result)
+    subroutine print_summary(run, result, table)
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
+        character(len=*), intent(in) :: table   !! name of the file with the time series
         type(event_totals) :: all
+        character(len=:), allocatable :: most
         integer :: i
 
         do i = 1, size(result%pieces)
@@ -21,8 +23,10 @@ contains
         end do
         write (output_unit, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
-        write (output_unit, '(2a, a, i0)') 'Newton iterations  ', &
-            trim(per_step(result%iterations, result%steps)), ' a step, most ', &
+        most = ', most '
+        if (run%adaptive) most = ' with all its parts, most in a part '
+        write (output_unit, '(4a, i0)') 'Newton iterations  ', &
+            trim(per_step(result%iterations, result%steps)), ' a step', most, &
             result%most_iterations
         if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
             result%rejected
@@ -41,6 +45,7 @@ contains
         call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')
         if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
         call print_energy(result)
+        write (output_unit, '(2a)') 'table              ', table
     end subroutine print_summary
 
     !> How far the events of a run are from those of a tighter one.
@@ -50,7 +55,10 @@ contains
 
         if (size(onsets) /= size(tighter)) write (output_unit, '(a, i0, a, i0)') &
             'events             ', size(onsets), '; by the tighter run ', size(tighter)
-        if (size(apart) == 0) return
+        if (size(apart) == 0) then
+            write (output_unit, '(a)') 'event-time error   -            no events to compare'
+            return
+        end if
         apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
         write (output_unit, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
             ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'

@@ -74,7 +74,10 @@ contains
         end if
         call read_sweep(file, plan)
         problem = file%describe_faults()
-        if (len(problem) > 0) problem = problem(:len(problem) - 1)   ! its last newline
+        if (len(problem) > 0) then
+            problem = problem(:len(problem) - 1)   ! its last newline
+            return
+        end if
         do i = 1, size(plan%runs)
             call plan%runs(i)%drive%divide(late_from(plan%runs(i)))
             plan%runs(i)%interval = huge(plan%runs(i)%interval)   ! no series is kept

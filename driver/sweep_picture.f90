@@ -48,7 +48,10 @@ contains
         call script%write_line('set rmargin 4')
         call script%write_line('set autoscale xfix')
         call script%write_line('set offsets graph 0.03, graph 0.03, graph 0.05, graph 0.05')
-        if (spread_over_decades(axis%values)) call script%write_line('set logscale x')
+        if (spread_over_decades(axis%values)) then
+            call script%write_line('set logscale x')
+            call script%write_line(log_tics(axis%values))
+        end if
         call script%write_line('set yrange [0:*]')
         call script%write_line('set ylabel "mean period [T]"')
         call script%write_line('plot file using 1:"period" smooth unique with linespoints ' &
@@ -134,6 +137,27 @@ contains
             text = text // '"' // number_text(values(i)) // '" ' // trim(place)
         end do
     end function tics
+
+    !> Labels at 1, 2 and 5 of a few decades; of many, those that gnuplot chooses.
+    pure function log_tics(values) result(text)
+        real(dp), intent(in) :: values(:)   !! > 0
+        character(len=:), allocatable :: text
+        integer, parameter :: most_decades = 4
+        character(len=12) :: power
+        integer :: lowest, highest, k
+
+        text = 'set xtics autofreq'
+        lowest = floor(log10(minval(values)))
+        highest = floor(log10(maxval(values)))
+        if (highest - lowest >= most_decades) return
+        text = 'set xtics ('
+        do k = lowest, highest
+            write (power, '(a, i0)') 'e', k
+            if (k > lowest) text = text // ', '
+            text = text // '1' // trim(power) // ', 2' // trim(power) // ', 5' // trim(power)
+        end do
+        text = text // ')'
+    end function log_tics
 
     pure function spread_over_decades(values) result(wide)
         real(dp), intent(in) :: values(:)

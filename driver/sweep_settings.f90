@@ -120,43 +120,63 @@ contains
     end subroutine check_axes
 
     !> A value replaces all that the input gives for its key. Each combination is read as if it were
-    !> the only one; faults that it shares with an earlier one are not repeated.
+    !> the only one; faults that it shares with an earlier one are not repeated. Those that the
+    !> first one does not have come with the values that make them.
     subroutine read_combinations(file, plan)
         type(namelist_file), intent(inout) :: file
         type(sweep_plan), intent(inout) :: plan
-        type(fault), allocatable :: faults(:)
+        type(fault), allocatable :: faults(:), known(:)
+        character(len=:), allocatable :: values
         integer :: places(size(plan%axes)), i, j
 
         faults = file%faults
+        known = file%faults
         deallocate (plan%runs)
         allocate (plan%runs(product([(size(plan%axes(j)%values), j = 1, size(plan%axes))])))
         do i = 1, size(plan%runs)
             places = plan%place(i)
             file%faults = [fault ::]
+            values = ''
             do j = 1, size(plan%axes)
                 associate (axis => plan%axes(j))
                     call file%substitute(axis%group, axis%key, 'sweep', axis%source, places(j))
+                    values = values // ', ' // axis%name // ' = ' // file%value_of(axis%group, &
+                        axis%key)
                 end associate
             end do
             call read_settings(file, plan%runs(i))
-            call add_new(faults, file%faults)
+            if (i == 1) values = '  '
+            call add_new(faults, known, file%faults, plan%axes, values(3:))
         end do
         call move_alloc(faults, file%faults)
     end subroutine read_combinations
 
-    subroutine add_new(faults, more)
-        type(fault), allocatable, intent(inout) :: faults(:)
+    !> Adds the faults that are not among those known, with the values of the sweep at which they
+    !> were met first, if these are told and the fault does not name its own.
+    subroutine add_new(faults, known, more, axes, values)
+        type(fault), allocatable, intent(inout) :: faults(:), known(:)
         type(fault), intent(in) :: more(:)
+        type(sweep_axis), intent(in) :: axes(:)
+        character(len=*), intent(in) :: values
+        type(fault) :: new
         integer :: i, j
-        logical :: known
+        logical :: old, own
 
         do i = 1, size(more)
-            known = .false.
-            do j = 1, size(faults)
-                known = known .or. (faults(j)%line == more(i)%line .and. faults(j)%text &
-                    == more(i)%text)
+            old = .false.
+            do j = 1, size(known)
+                old = old .or. (known(j)%line == more(i)%line .and. known(j)%text == more(i)%text)
             end do
-            if (.not. known) faults = [faults, more(i)]
+            if (old) cycle
+            known = [known, more(i)]
+            new = more(i)
+            own = .false.
+            do j = 1, size(axes)
+                own = own .or. index(new%text, '&' // axes(j)%group // ' ' // axes(j)%key &
+                    // ' = ') == 1
+            end do
+            if (len(values) > 0 .and. .not. own) new%text = new%text // ' (at ' // values // ')'
+            faults = [faults, new]
         end do
     end subroutine add_new
 

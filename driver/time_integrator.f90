@@ -69,7 +69,7 @@ contains
         type(slider), intent(in) :: system
         real(dp), intent(in) :: drive            !! position of the drive at the end [L]
         real(dp), intent(in) :: normal           !! normal traction at the end [F/L^2]
-        real(dp), intent(in) :: dt               !! > 0 [T]
+        real(dp), intent(in) :: dt               !! 0 cannot be done [T]
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new   !! allocated like `old`
         type(step_report), intent(out) :: report
@@ -80,6 +80,8 @@ contains
         logical :: inertial, solved
 
         report%iterations = 0
+        report%status = friction_no_convergence
+        if (dt <= 0.0_dp) return   ! steps so short that time stands still
         inertial = system%mass > 0.0_dp
         if (inertial) then
             inertia = (1.0_dp - self%alpha_m) * system%mass / (self%beta * dt**2) &

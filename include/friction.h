@@ -2,7 +2,7 @@
  *
  * Every function is a function of its arguments alone and may be called from any number of threads.
  * Component 1 is normal, then tangential 1 and 2. Tractions are those that the contact transmits,
- * positive in tension. On a negative status no argument has been touched. */
+ * positive in tension. On a negative status no argument has been touched; in a batch, none of that point's. */
 #ifndef STICKSLIP_FRICTION_H
 #define STICKSLIP_FRICTION_H
 

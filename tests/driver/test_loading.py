@@ -148,6 +148,15 @@ class QuasiStatic(Columns):
         self.assertRegex(result.stderr, r'the run failed at time  ?[\d.E+]+, step \d+: the slider is unstable')
         self.assertGreater(len(self.rows('case_out/case.csv')), 10)
 
+    def test_a_surface_that_weakens_with_slip_is_unstable_in_the_same_words(self):
+        changes = {('slider', 'mass'): '0', ('slider', 'damping'): '0', ('slider', 'stiffness'): '100', ('drive', 'velocity'): '0.1',
+                   ('time', 't_end'): '1'}
+        text = namelist(changes, [('friction', None)]) + ("&friction law='slip_weakening', alpha_n=1000, alpha_t=1000, "
+                                                          'mu_s=0.4, mu_k=0.2, d_c=0.01 /\n')
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('the slider is unstable without inertia', result.stderr)
+
     def test_stiffness_at_which_the_slider_becomes_unstable(self):
         # theory.md, section 6, at mu_ss: unstable iff K k_t/(K + k_t) < A
         a = 10 * 10 * ((10 * 0.1 * 0.2 + 0.4) / 2 - 0.2)
@@ -268,6 +277,8 @@ class AdaptiveSteps(Columns):
     def test_bad_keys_of_adaptive_steps_and_damping(self):
         self.refused(namelist({('time', 'dt_min'): '1', ('time', 'dt_max'): '1'}),
                      '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
+        self.refused(namelist({('time', 'rtol'): '1'}), '&time rtol = 1: must be from 1e-12 to 0.1\n')
+        self.refused(namelist({('time', 'beta'): '0'}), '&time beta = 0: must be from 0.01 to 1\n')
         self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
                      '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
         self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
@@ -280,7 +291,8 @@ class BadProgramme(Columns):
     def test_files_that_are_no_programme(self):
         for content, said in (
                 ('', 'is empty'),
-                ('time,velocity\n', 'less than two rows'),
+                ('time,velocity\n', 'fewer than two rows'),
+                ('time;velocity\n0;1\n1;1\n', 'line 1: the cells must be separated by commas'),
                 ('time,speed\n0,1\n1,1\n', "line 1: column 'speed' is none of"),
                 ('time,velocity,time\n0,1,0\n1,1,1\n', "column 'time' is given twice"),
                 ('velocity,normal\n0,1\n1,1\n', "line 1: column 'time' is missing"),
@@ -301,6 +313,12 @@ class BadProgramme(Columns):
         self.assertGreater(len(result.stderr.splitlines()), 15)
         self.assertLess(len(result.stderr.splitlines()), 25)
 
+    def test_a_key_that_has_no_place_is_not_unknown_as_well(self):
+        for text in (namelist({('time', 'dt_min'): '1'}),
+                     self.with_file('time,velocity\n0,1\n1,1\n').replace('file =', 'normal_change = "ramp"\n file =')):
+            said = self.run_text(text, verb='check').stderr
+            self.assertEqual(len(said.splitlines()), 1, said)
+
     def test_file_that_is_not_there_and_lists_beside_it(self):
         self.refused(namelist({('drive', 'file'): "'none.csv'", ('drive', 'duration'): '1'}),
                      '&drive velocity = 1: cannot stand beside file', '&drive duration = 1: cannot',
@@ -318,6 +336,17 @@ class BadProgramme(Columns):
 
     def test_a_law_without_r_refuses_an_initial_r(self):
         self.refused(law_namelist('rate_and_state') + '&initial r=0.5 /', '&initial r = 0.5: belongs to the law subloading')
+
+    def test_an_initial_friction_beyond_the_strength_is_refused(self):
+        for law in ('coulomb', 'static_kinetic', 'slip_weakening'):
+            self.refused(law_namelist(law) + '&initial mu=0.41 /',
+                         '&initial mu = 0.41: must not exceed the static friction coefficient')
+        self.refused(law_namelist('rate_and_state', tau_max='2') + '&initial mu=0.3 /',
+                     '&initial mu = 0.3: makes a friction force above tau_max')
+        self.refused(namelist({('friction', 'tau_max'): '2', ('initial', 'r'): '0.8', ('initial', 'mu'): '0.3'}),
+                     '&initial r = 0.8: makes a friction force above tau_max')
+        result = self.run_text(law_namelist('coulomb', tau_max='3') + '&initial mu=0.3 /', '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_initial_values_out_of_range(self):
         self.refused(namelist({('initial', 'mu'): '0.1', ('initial', 'r'): '1.1',

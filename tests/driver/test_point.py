@@ -245,6 +245,7 @@ class BadInput(Point):
         result = self.run_text(namelist(), verb='run')
         self.assertEqual(result.returncode, 2)
         self.assertIn('&point: unknown group', result.stderr)
+        self.assertIn('stickslip point case.nml', result.stderr)
 
     def test_values_out_of_range_and_of_the_wrong_type(self):
         self.refused(namelist({'ndir': '4', 'cycles': '0', 'tangent': '3', 'control_n': "'force'",

@@ -97,6 +97,7 @@ class GoodInput(Program):
         events = (self.folder / 'case_out/case_events.csv').read_text()
         self.assertEqual(events, 'onset,duration,stress_drop,slip,peak_velocity,recurrence_time\n')
         self.assertIn('unbalanced', result.stdout)
+        self.assertIn('table              case_out/case.csv', result.stdout)
         self.assertFalse((self.folder / 'case_out/case.png').exists())
 
     def test_every_row_obeys_the_equation_of_motion(self):
@@ -287,6 +288,8 @@ class BadInput(Program):
     def test_empty_file(self):
         self.refused('', 'group &friction is missing', 'group &slider is missing',
                      'group &drive is missing', 'group &time is missing')
+        result = self.run_text('')
+        self.assertEqual(len(result.stderr.splitlines()), 4, result.stderr)
 
     def test_wrong_types(self):
         self.refused(namelist({('slider', 'mass'): "'heavy'", ('time', 'dt'): 'fast',
@@ -328,6 +331,7 @@ class BadInput(Program):
         self.refused(namelist({('drive', 'velocity'): '1, 2, 3', ('drive', 'duration'): '1, 2'}),
                      '&drive duration: must have 3 values')
         self.refused(namelist({('drive', 'velocity'): '1, 2'}), '&drive duration: must have 2 values')
+        self.assertEqual(len(self.run_text(namelist({('drive', 'velocity'): '1, 2'})).stderr.splitlines()), 1)
         self.refused(namelist({('drive', 'velocity'): '1, 2', ('drive', 'duration'): '3*1'}),
                      '&drive velocity: must have one value or 3 values')
         self.refused(namelist({('drive', 'velocity'): '1, 2', ('drive', 'duration'): '1, -1'}),
@@ -355,6 +359,7 @@ class BadInput(Program):
             self.assertIn('nowhere.nml', result.stderr)
             result = self.run_program(verb, '.')
             self.assertEqual(result.returncode, 2)
+            self.assertIn('is a directory', result.stderr)
 
     def test_binary_rubbish(self):
         (self.folder / 'case.nml').write_bytes(bytes(range(256)) * 20)
@@ -372,11 +377,13 @@ class BadInput(Program):
 
     def test_bad_usage_shows_the_usage(self):
         for arguments in ([], ['walk'], ['run'], ['run', 'a.nml', 'b.nml'], ['run', '--fast', 'a.nml'],
-                          ['run', 'a.nml', '--output'], ['check', 'a.nml', '--no-plot']):
+                          ['run', 'a.nml', '--output'], ['check', 'a.nml', '--no-plot'],
+                          ['point', 'a.nml', '--verify'], ['sweep', 'a.nml', '--resume']):
             result = self.run_program(*arguments)
             self.assertEqual(result.returncode, 2, arguments)
             self.assertIn('usage: stickslip', result.stderr)
             self.assertEqual(result.stdout, '')
+        self.assertIn("unknown option '--outptu'", self.run_program('run', 'a.nml', '--outptu', 'b').stderr)
 
 
 class FailedRun(Program):
@@ -384,7 +391,7 @@ class FailedRun(Program):
         result = self.run_text(namelist({('time', 't_end'): '10', ('time', 'dt'): '0.05',
                                          ('time', 'max_iterations'): '4'}), '--no-plot')
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: ')
+        self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: .* take a smaller dt')
         self.assertGreater(len(self.rows('case_out/case.csv')), 5)
 
     def test_a_full_disk_is_a_failed_run(self):

@@ -201,6 +201,11 @@ class BadInput(Sweep):
                      '&sweep values = NaN: must be finite')
         self.refused(sweep('output%interval', '1, 1.5'), '&output interval', 'must be a whole number')
 
+    def test_values_that_break_the_rule_of_another_key_are_told(self):
+        said = self.refused(sweep('friction%mu_k', '0.1, 0.5, 0.7'),
+                            '&friction mu_s = 0.4: must be >= mu_k (at friction%mu_k = 0.5)')
+        self.assertEqual(len(said.splitlines()), 1, said)
+
     def test_keys_that_are_not_numbers(self):
         self.refused(sweep('friction%law', '1, 2'), '&friction law = 1: must be text in quotes')
 
@@ -216,10 +221,16 @@ class BadInput(Sweep):
                             '&slider mass = -1: must be >= 0', '&friction m: is missing')
         self.assertEqual(len(said.splitlines()), 2, said)
 
+    def test_groups_and_drive_that_are_missing(self):
+        self.refused(sweep('friction%m', '1, 2', without=[('drive', None)]), 'group &drive is missing')
+        self.refused(sweep('friction%m', '1, 2', without=[('drive', 'velocity')]),
+                     '&drive velocity: is missing')
+
     def test_a_run_does_not_take_a_sweep(self):
         result = self.run_text(sweep('drive%velocity', '1'))
         self.assertEqual(result.returncode, 2)
         self.assertIn('&sweep: unknown group', result.stderr)
+        self.assertIn('stickslip sweep case.nml', result.stderr)
 
     def test_bad_usage(self):
         for arguments in (['sweep'], ['sweep', 'a.nml', '--jobs'], ['sweep', 'a.nml', '--jobs', '0'],
