@@ -74,7 +74,7 @@ contains
         type(slider_state), intent(inout) :: new   !! allocated like `old`
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements at the end [L]
-        integer, parameter :: max_halvings = 8
+        integer, parameter :: max_halvings = 8, to_and_fro = 10
         real(dp) :: du_n, inertia, norm, norm_old, scale
         integer :: halving
         logical :: inertial, solved
@@ -109,6 +109,12 @@ contains
                 if (norm <= self%tolerance * scale) exit
                 report%status = friction_no_convergence
                 if (report%iterations == self%max_iterations) return
+                if (report%iterations == to_and_fro .and. size(w%dx) == 1) then
+                    ! between slip one way and slip the other: a stiff contact may well stick
+                    w%dx = 0.0_dp
+                    call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
+                    if (report%status < 0) return
+                end if
                 call fill(w%matrix, w%tangent)
                 if (.not. inertial .and. any(w%matrix%diagonal <= 0.0_dp)) return
                 w%correction = w%residual

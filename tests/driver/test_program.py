@@ -112,6 +112,17 @@ class GoodInput(Program):
             self.assertAlmostEqual(abs(r['friction_force']), 2.5 * r['R'] * r['mu'] * 10,
                                    delta=1e-12)
 
+    def test_a_nearly_rigid_contact_slips_as_a_softer_one_does(self):
+        # Newton's method goes to and fro between stick and slip there; it tries whether the block sticks. The contact is so stiff
+        # that the event no longer depends on it; the steps are an 80th of the event.
+        onsets = []
+        for alpha_t in ('1e6', '1e9'):
+            result = self.run_text(namelist({('friction', 'alpha_t'): alpha_t, ('slider', 'damping'): '0',
+                                             ('time', 't_end'): '5'}), '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            onsets.append(float(self.rows('case_out/case_events.csv')[0]['onset']))
+        self.assertLess(abs(onsets[0] - onsets[1]), 1e-5)
+
     def test_rows_are_written_at_the_interval_and_at_the_end(self):
         self.run_text(namelist({('output', 'interval'): '30'}), '--no-plot')
         times = [float(row['time']) for row in self.rows('case_out/case.csv')]
