@@ -251,6 +251,30 @@ class AdaptiveSteps(Columns):
         for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
 
+    def test_an_open_contact_does_not_slip(self):
+        # 7.3 + 11.7 sin(10.6 pi t + 1.1) is far from a number of digits: round-off must not hold the contact closed
+        opening = {('slider', 'normal_traction'): '7.3', ('drive', 'normal_amplitude'): '11.7',
+                   ('drive', 'normal_frequency'): '5.3', ('drive', 'normal_phase'): '1.1',
+                   ('friction', 'alpha_n'): '943.7', ('time', 't_end'): '2'}
+        for steps in ({('time', 'dt'): '1e-3'}, {('time', 'dt'): '1e-4', ('time', 'rtol'): '1e-5'}):
+            run = self.run_columns(namelist({**opening, **steps}))
+            load = [7.3 + 11.7 * math.sin(10.6 * math.pi * t + 1.1) for t in run['time']]
+            flight = [k for k in range(1, len(load)) if max(load[k - 1:k + 1]) < -0.1]
+            self.assertGreater(len(flight), 20)
+            for k in flight:
+                self.assertEqual((run['friction_force'][k], run['R'][k]), (0.0, 0.0))
+                self.assertAlmostEqual(run['slip'][k], run['slip'][k - 1], delta=1e-12)
+
+    def test_a_step_of_the_normal_traction_reaches_a_rate_and_state_contact(self):
+        # at rest under twice the load: mu = 0.3 = 0.6 + 0.005 ln(theta v0/d_c) + 0.01 ln(v/v0) leaves no slip to see
+        text = law_namelist('rate_and_state', b='0.005').replace('velocity = 1\n',
+                                                                 'velocity = 1e-3, normal = 10, 20, duration = 5, 5\n')
+        text = text.replace('normal_traction = 10', '').replace('t_end = 0.1', 't_end = 10')
+        text = text.replace('dt = 1e-3', 'rtol = 1e-6') + '&initial mu = 0.6, velocity = 1e-3 /'
+        run = self.run_columns(text)
+        self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 20, delta=1e-12)
+        self.assertAlmostEqual(run['slip'][-1], 5e-3, delta=1e-6)
+
     def test_quasi_static_steps_adapt_too(self):
         changes = {**QuasiStatic.steady, ('drive', 'velocity'): '0.1', ('time', 'rtol'): '1e-6'}
         run = self.run_columns(namelist(changes, [('time', 'dt')]))
