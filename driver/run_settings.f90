@@ -3,7 +3,8 @@ module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_settings, only : chain, read_chain
     use field_file, only : netcdf_available
-    use law_input, only : is_subloading, kinetic_coefficient, read_friction, typical_coefficient
+    use law_input, only : is_second_order, is_subloading, kinetic_coefficient, read_friction, &
+        typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use recorder, only : most_in_csv
@@ -246,9 +247,7 @@ contains
         call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
-        run%order = 1
-        if (size(run%props) < 10) return
-        if (is_subloading(run%props) .and. run%props(10) > 0.0_dp) run%order = 2
+        run%order = merge(2, 1, is_second_order(run%props))
     end subroutine read_adaptive
 
 end module run_settings

@@ -9,7 +9,7 @@ module step_control
     use exponential_rule, only : exponential
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
-    use law_input, only : is_subloading, typical_coefficient
+    use law_input, only : coefficient_error, is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
@@ -338,8 +338,8 @@ contains
     end subroutine try_levels
 
     !> Estimate of the error, part of the tolerated one: displacement and slip as the force that
-    !> they mean to the spring, velocity by the amplitude that it becomes, friction coefficient by
-    !> the force that it changes.
+    !> they mean to the spring, velocity by the amplitude that it becomes, what the law remembers by
+    !> the friction force that it changes.
     function error_of(self) result(error)
         class(stepper), intent(inout) :: self
         real(dp) :: error
@@ -348,8 +348,9 @@ contains
         associate (e => self%passing, s => self%system)
             error = maxval(max(s%stiffness * abs(e%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(e%v), &
-                s%stiffness * abs(e%statev(:, statev_slip)), &
-                self%pressing * abs(e%statev(:, statev_mu))))
+                s%stiffness * abs(e%statev(:, statev_slip))))
+            error = max(error, self%pressing * maxval(coefficient_error(s%props, &
+                self%ends(2)%statev, e%statev)))
         end associate
         error = error / self%tolerated
     end function error_of
