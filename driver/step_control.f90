@@ -19,9 +19,12 @@ module step_control
     implicit none
     private
 
-    public :: stepper
+    public :: next_row, stepper
 
     integer, parameter :: most_levels = 3
+    !> Part of the time that no adaptive step is shorter than: a third of it is still more than
+    !> round-off.
+    real(dp), parameter :: shortest = 1.0e-14_dp
 
     type :: stepper
         type(slider) :: system
@@ -55,7 +58,7 @@ module step_control
     contains
         procedure :: begin, take_step, finished
         procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, try, try_levels, &
-            error_of, extrapolate, reversal, opening
+            error_of, extrapolate, next_limit, reversal, opening
     end type stepper
 
     integer, parameter :: most_parts = 2**20   !! of a fixed step
@@ -233,17 +236,20 @@ contains
         real(dp) :: limit, end, dt, error, power, event
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
+        logical :: turns   !! count, and are foreseen
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
-        limit = min(self%drive%next_start(old%time), self%t_end, next_row(self%every, old%time))
+        limit = self%next_limit(old%time)
         call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old)
-        if (self%exponential) call expect_stick_after_turn(self%system, old, self%rule%contact)
+        turns = self%exponential .and. old%normal > 0.0_dp
+        if (old%normal <= 0.0_dp) self%rule%contact = 0.0_dp
+        if (turns) call expect_stick_after_turn(self%system, old, self%rule%contact)
         event = huge(event)
         cuts = 0
         do
             end = min(old%time + self%dt, event)
-            if (self%exponential) end = min(end, next_turn(self%system, old, &
+            if (turns) end = min(end, next_turn(self%system, old, &
                 self%rule%contact, self%drive%drive_velocity(old%time, piece)))
             end = end_of_step(old%time, end - old%time, limit)
             dt = end - old%time
@@ -253,7 +259,8 @@ contains
                 error = self%error_of()
                 if (error <= 1.0_dp) then
                     event = min(self%opening(old, end, piece), self%reversal(old))
-                    if (event >= end .or. event - old%time <= 1.0e-3_dp * dt) exit
+                    if (event >= end .or. event - old%time <= max(1.0e-3_dp * dt, shortest &
+                        * old%time)) exit
                     if (cuts == most_cuts) exit
                     cuts = cuts + 1
                     cycle
@@ -263,7 +270,7 @@ contains
                 self%dt = 0.25_dp * dt
             end if
             self%rejected = self%rejected + 1
-            if (self%dt < self%dt_min) then
+            if (self%dt < max(self%dt_min, shortest * old%time)) then
                 if (report%status >= 0) report%status = friction_no_convergence
                 return
             end if
@@ -278,14 +285,34 @@ contains
         call self%extrapolate(end - old%time, new)
     end subroutine take_adaptive_step
 
+    !> Where a step from a time ends at the latest: at the next piece, the next row, or the end of
+    !> the run. Of those that are no step apart it is the last.
+    pure function next_limit(self, time) result(limit)
+        class(stepper), intent(in) :: self
+        real(dp), intent(in) :: time   !! [T]
+        real(dp) :: limit              !! [T]
+        real(dp) :: next
+
+        next = time
+        do
+            limit = next
+            next = min(self%drive%next_start(limit), next_row(self%every, limit), self%t_end)
+            if (limit >= self%t_end) return
+            if (limit > time .and. next > limit * (1.0_dp + shortest)) return
+        end do
+    end function next_limit
+
     !> The first multiple of `every` after a time; huge if there is none.
     pure function next_row(every, time) result(next)
         real(dp), intent(in) :: every, time   !! [T]
         real(dp) :: next                      !! [T]
-        real(dp), parameter :: round_off = 1.0e-6_dp
+        real(dp) :: n
 
         next = huge(next)
-        if (every > 0.0_dp) next = every * (aint(time / every + round_off) + 1.0_dp)
+        if (every <= 0.0_dp) return
+        n = anint(time / every)
+        if (every * n <= time) n = n + 1.0_dp
+        next = every * n
     end function next_row
 
     !> A block that has just turned round is carried elastically at first.
@@ -400,6 +427,7 @@ contains
         real(dp), parameter :: negligible = 0.1_dp   !! part of the tolerated error
 
         time = huge(time)
+        if (old%normal <= 0.0_dp) return
         associate (before => old%statev(:, statev_status), &
             after => self%ends(2)%statev(:, statev_status))
             if (.not. self%exponential .and. all(nint(before) == nint(after))) return

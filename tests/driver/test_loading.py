@@ -228,6 +228,19 @@ class AdaptiveSteps(Columns):
         onset = float(self.rows('case_out/case_events.csv')[0]['onset'])
         self.assertAlmostEqual(onset, 3.98783113667, delta=1e-6)   # as above
 
+    def test_no_rows_come_beside_the_even_times(self):
+        run = self.run_columns(namelist({('time', 'rtol'): '1e-6', ('time', 'dt'): '1e-9', ('output', 'every'): '0.05'}))
+        self.assertEqual(run['time'], [0.0, 0.05, 0.1])   # though the first steps are a few 1e-9 long
+
+    def test_no_step_leads_over_round_off(self):
+        # 0.57 * 100 is a little less than 57, and there is no time in the middle of the second piece
+        run = self.run_columns(namelist({('time', 't_end'): '57', ('time', 'rtol'): '1e-5', ('slider', 'damping'): '1',
+                                         ('output', 'every'): '0.57'}, [('time', 'dt')]))
+        self.assertEqual((len(run['time']), run['time'][-1]), (101, 57.0))
+        run = self.run_columns(namelist({('drive', 'velocity'): '1, 2, 0.5', ('drive', 'duration'): '1, 2.3e-16, 1',
+                                         ('time', 'rtol'): '1e-5', ('time', 't_end'): '2'}, [('time', 'dt')]))
+        self.assertAlmostEqual(run['drive'][-1], 1.5, delta=1e-14)
+
     def test_bad_times_of_rows(self):
         self.refused(namelist({('output', 'every'): '0.1'}), '&output every = 0.1: needs &time rtol')
         self.refused(namelist({('output', 'every'): '-1', ('time', 'rtol'): '1e-6'}), '&output every = -1: must be > 0')
