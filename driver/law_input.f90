@@ -113,7 +113,8 @@ contains
         case (law_rate_state)
             error = abs(props(5) * errors(:, statev_r) / statev(:, statev_r))
         case (law_slip_weakening)
-            error = abs((props(4) - props(5)) / props(6) * errors(:, statev_r))
+            error = merge((props(4) - props(5)) / props(6) * abs(errors(:, statev_r)), 0.0_dp, &
+                statev(:, statev_r) < props(6))   ! then it is weak for good
         case default
             error = abs(errors(:, statev_mu))
         end select

@@ -258,6 +258,8 @@ contains
                 // 'unloads. Give it a mass to see the jump, or a stiffer spring'
         else if (run%adaptive) then
             why = 'not within the tolerance by steps as short as dt_min'
+        else
+            why = 'no equilibrium found: take a smaller dt'
         end if
     end function why_stopped
 

@@ -307,20 +307,24 @@ contains
         stiffness(first:last) = system%area * tangent(:, 2, 2)
     end subroutine forces_on_part
 
-    !> A sudden change of the normal traction, at one moment of time.
-    subroutine apply_normal_traction(system, normal, state)
+    !> A sudden change of the normal traction, at one moment of time. A loaded contact whose friction
+    !> depends on the slip rate needs time for it: there the next step has to press it.
+    subroutine apply_normal_traction(system, normal, state, taken)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: normal   !! afterwards [F/L^2]
         type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken    !! or else left to the next step
         real(dp), allocatable :: old(:, :), zero(:), tangent(:)
         integer :: status
 
+        taken = .true.
         if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
         allocate (zero(size(state%x)), tangent(size(state%x)))
         zero = 0.0_dp
         old = state%statev
         call friction_forces(system, old, normal, zero, 0.0_dp, state%statev, state%friction, &
             tangent, status)
+        taken = status >= 0
         state%normal = normal
         call set_accelerations(system, state)
     end subroutine apply_normal_traction

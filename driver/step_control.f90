@@ -237,11 +237,13 @@ contains
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
         logical :: turns   !! count, and are foreseen
+        logical :: pressed   !! or is it for this step to do?
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
         limit = self%next_limit(old%time)
-        call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old)
+        call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old, &
+            pressed)
         turns = self%exponential .and. old%normal > 0.0_dp
         if (old%normal <= 0.0_dp) self%rule%contact = 0.0_dp
         if (turns) call expect_stick_after_turn(self%system, old, self%rule%contact)
@@ -271,6 +273,10 @@ contains
             end if
             self%rejected = self%rejected + 1
             if (self%dt < max(self%dt_min, shortest * old%time)) then
+                ! friction that meets a sudden load slips by the logarithm of the time it has: no
+                ! step is short enough for that
+                error = 1.0_dp
+                if (report%status >= 0 .and. .not. pressed) exit
                 if (report%status >= 0) report%status = friction_no_convergence
                 return
             end if

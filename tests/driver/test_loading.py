@@ -288,6 +288,21 @@ class AdaptiveSteps(Columns):
         self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 20, delta=1e-12)
         self.assertAlmostEqual(run['slip'][-1], 5e-3, delta=1e-6)
 
+    def test_a_rate_and_state_contact_that_is_relieved_at_once_slips_at_once(self):
+        # mu would be 1.2 at half the load: no step is short enough for the rate of that
+        text = law_namelist('rate_and_state').replace('velocity = 1\n',
+                                                      'velocity = 1e-3, normal = 10, 5, duration = 5, 5\n')
+        text = text.replace('normal_traction = 10', '').replace('t_end = 0.1', 't_end = 10').replace('damping = 0.01', '')
+        text = text.replace('dt = 1e-3', 'rtol = 1e-6') + '&initial mu = 0.6, velocity = 1e-3 /'
+        run = self.run_columns(text)
+        self.assertLess(run['mu'][-1], 0.7)
+        self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 5, delta=1e-12)
+
+    def test_a_surface_that_has_weakened_for_good_slides_at_tight_tolerances(self):
+        text = law_namelist('slip_weakening', d_c='1e-4').replace('dt = 1e-3', 'rtol = 1e-12')
+        run = self.run_columns(text.replace('t_end = 0.1', 't_end = 6').replace('damping = 0.01', 'damping = 1'))
+        self.assertGreater(run['slip'][-1], 1)
+
     def test_contacts_whose_coefficient_jumps_take_few_steps(self):
         # it jumps at a touchdown, and where a shear cap begins to hold; what the law remembers does not
         opening = {('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5'}
