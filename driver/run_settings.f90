@@ -68,6 +68,7 @@ contains
         call read_drive(file, normal, run%drive)
         call read_initial(file, run)
         call read_time(file, run)
+        call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
         if (file%has_group('output')) continue
@@ -77,6 +78,16 @@ contains
         call read_fields(file, run)
         call file%refuse_unknown()
     end subroutine read_settings
+
+    !> A tolerance that is a part of nothing cannot be met.
+    subroutine check_scale(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+
+        if (.not. run%adaptive .or. size(file%faults) > 0) return
+        if (typical_coefficient(run%props) * run%drive%largest_normal() <= 0.0_dp) call &
+            file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
+    end subroutine check_scale
 
     !> When rows of the time series are due.
     subroutine read_rows(file, run)

@@ -307,8 +307,8 @@ contains
         stiffness(first:last) = system%area * tangent(:, 2, 2)
     end subroutine forces_on_part
 
-    !> A sudden change of the normal traction, at one moment of time. A loaded contact whose friction
-    !> depends on the slip rate needs time for it: there the next step has to press it.
+    !> A sudden change of the normal traction, at one moment of time. A loaded contact whose
+    !> friction depends on the slip rate needs time for it: there the next step has to press it.
     subroutine apply_normal_traction(system, normal, state, taken)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: normal   !! afterwards [F/L^2]

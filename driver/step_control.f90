@@ -25,6 +25,7 @@ module step_control
     !> Part of the time that no adaptive step is shorter than: a third of it is still more than
     !> round-off.
     real(dp), parameter :: shortest = 1.0e-14_dp
+    real(dp), parameter :: swing = 0.1_dp   !! that does not matter, part of the tolerated error
 
     type :: stepper
         type(slider) :: system
@@ -251,8 +252,8 @@ contains
         cuts = 0
         do
             end = min(old%time + self%dt, event)
-            if (turns) end = min(end, next_turn(self%system, old, &
-                self%rule%contact, self%drive%drive_velocity(old%time, piece)))
+            if (turns) end = min(end, next_turn(self%system, old, self%rule%contact, &
+                self%drive%drive_velocity(old%time, piece), swing * self%tolerated))
             end = end_of_step(old%time, end - old%time, limit)
             dt = end - old%time
             call self%try_levels(old, end, piece, report)
@@ -430,7 +431,6 @@ contains
         class(stepper), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp) :: time   !! [T]; huge without such a moment
-        real(dp), parameter :: negligible = 0.1_dp   !! part of the tolerated error
 
         time = huge(time)
         if (old%normal <= 0.0_dp) return
@@ -440,11 +440,11 @@ contains
         end associate
         time = turn(self%system, old, self%middle)
         if (time < huge(time)) then
-            if (moved(old, time - old%time) > negligible * self%tolerated) return
+            if (moved(old, time - old%time) > swing * self%tolerated) return
         end if
         time = turn(self%system, self%middle, self%ends(2))
         if (time >= huge(time)) return
-        if (moved(self%ends(2), self%ends(2)%time - time) > negligible * self%tolerated) return
+        if (moved(self%ends(2), self%ends(2)%time - time) > swing * self%tolerated) return
         time = huge(time)
 
     contains

@@ -303,6 +303,13 @@ class AdaptiveSteps(Columns):
         run = self.run_columns(text.replace('t_end = 0.1', 't_end = 6').replace('damping = 0.01', 'damping = 1'))
         self.assertGreater(run['slip'][-1], 1)
 
+    def test_ringing_that_does_not_matter_takes_no_steps(self):
+        # undamped, the contact rings at 1000 rad/s all the while that the spring is loaded; by 1e-4 of its strength
+        result = self.run_text(namelist({('time', 'rtol'): '1e-3', ('time', 't_end'): '3', ('slider', 'damping'): '0',
+                                         ('drive', 'velocity'): '1e-2'}, [('time', 'dt')]), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 300)
+
     def test_contacts_whose_coefficient_jumps_take_few_steps(self):
         # it jumps at a touchdown, and where a shear cap begins to hold; what the law remembers does not
         opening = {('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5'}
@@ -343,6 +350,9 @@ class AdaptiveSteps(Columns):
     def test_bad_keys_of_adaptive_steps_and_damping(self):
         self.refused(namelist({('time', 'dt_min'): '1', ('time', 'dt_max'): '1'}),
                      '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
+        for changes in ({('friction', 'mu_s'): '0', ('friction', 'mu_k'): '0'}, {('drive', 'normal'): '0'}):
+            self.refused(namelist({('time', 'rtol'): '1e-6', **changes}),
+                         '&time rtol = 1e-6: is a part of the static friction force, which is 0 here')
         self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
                      '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
         self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
