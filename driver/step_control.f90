@@ -234,7 +234,7 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         real(dp), parameter :: safety = 0.9_dp, most_growth = 4.0_dp, most_cut = 0.2_dp
-        real(dp) :: limit, end, dt, error, power, event
+        real(dp) :: limit, end, dt, error, power, event, kink
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
         logical :: turns   !! count, and are foreseen
@@ -255,15 +255,16 @@ contains
             if (turns) end = min(end, next_turn(self%system, old, self%rule%contact, &
                 self%drive%drive_velocity(old%time, piece), swing * self%tolerated))
             end = end_of_step(old%time, end - old%time, limit)
+            kink = self%opening(old, end, piece)
+            if (matters(kink)) end = kink
             dt = end - old%time
             call self%try_levels(old, end, piece, report)
             self%stiffness = max(self%system%stiffness, report%stiffness)
             if (report%status >= 0) then
                 error = self%error_of()
                 if (error <= 1.0_dp) then
-                    event = min(self%opening(old, end, piece), self%reversal(old))
-                    if (event >= end .or. event - old%time <= max(1.0e-3_dp * dt, shortest &
-                        * old%time)) exit
+                    event = self%reversal(old)
+                    if (.not. matters(event)) exit
                     if (cuts == most_cuts) exit
                     cuts = cuts + 1
                     cycle
@@ -290,6 +291,18 @@ contains
         self%dt = min(self%dt_max, dt)
         self%last_error = error
         call self%extrapolate(end - old%time, new)
+
+    contains
+
+        !> Is a time so far into the step, and so far from its end, that it should end there?
+        pure function matters(time) result(yes)
+            real(dp), intent(in) :: time   !! [T]
+            logical :: yes
+
+            yes = time - old%time > max(1.0e-3_dp * (end - old%time), shortest * old%time) &
+                .and. end - time > shortest * end
+        end function matters
+
     end subroutine take_adaptive_step
 
     !> Where a step from a time ends at the latest: at the next piece, the next row, or the end of
@@ -460,28 +473,29 @@ contains
 
     end function reversal
 
-    !> When the normal traction vanishes, or comes back, within a step; huge if neither.
+    !> When the normal traction vanishes, or comes back, within a step; huge if neither. The last
+    !> moment before: a part of a step that ends behind it slips all the way, or not at all.
     pure function opening(self, old, end, piece) result(time)
         class(stepper), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: end       !! of the step [T]
         integer, intent(in) :: piece
         real(dp) :: time                  !! [T]
-        real(dp) :: low, high
+        real(dp) :: middle, high
         logical :: open_before
         integer :: k
 
         time = huge(time)
         open_before = old%normal <= 0.0_dp
-        if (open_before .eqv. self%ends(2)%normal <= 0.0_dp) return
-        low = old%time
+        if (open_before .eqv. self%drive%normal_traction(end, piece) <= 0.0_dp) return
+        time = old%time
         high = end
         do k = 1, 52
-            time = 0.5_dp * (low + high)
-            if ((self%drive%normal_traction(time, piece) <= 0.0_dp) .eqv. open_before) then
-                low = time
+            middle = 0.5_dp * (time + high)
+            if ((self%drive%normal_traction(middle, piece) <= 0.0_dp) .eqv. open_before) then
+                time = middle
             else
-                high = time
+                high = middle
             end if
         end do
     end function opening

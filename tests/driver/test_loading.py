@@ -264,6 +264,14 @@ class AdaptiveSteps(Columns):
         for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
 
+    def test_a_touchdown_in_full_flight_is_met_at_any_tolerance(self):
+        # that moves past the base: a part of a step that ends behind the touchdown would slip all the way
+        result = self.run_text(namelist({('friction', 'scheme'): "'exact_rate'", ('friction', 'kappa'): '600',
+                                         ('drive', 'normal_amplitude'): '11', ('drive', 'normal_frequency'): '0.5',
+                                         ('slider', 'mass'): '10', ('slider', 'damping'): '0', ('time', 'rtol'): '1e-12',
+                                         ('time', 'dt_min'): '1e-7', ('time', 't_end'): '2.2'}, [('time', 'dt')]), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+
     def test_an_open_contact_does_not_slip(self):
         # 7.3 + 11.7 sin(10.6 pi t + 1.1) is far from a number of digits: round-off must not hold the contact closed
         opening = {('slider', 'normal_traction'): '7.3', ('drive', 'normal_amplitude'): '11.7',
