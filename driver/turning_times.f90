@@ -73,8 +73,8 @@ contains
     end function turn
 
     !> When a block on its springs begins or ends to slip next, were it not damped: its velocity
-    !> swings about the one with which the drive pulls the springs along. Huge if it never does, or
-    !> if the force swings by no more than a negligible one.
+    !> swings about the one with which the drive pulls the springs along. Huge if it never does, if
+    !> the damper lets nothing swing, or if the force swings by no more than a negligible one.
     pure function next_turn(system, state, contact, velocity, negligible) result(time)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: state   !! of one block, with a mass
@@ -86,6 +86,7 @@ contains
         real(dp) :: omega, mean, amplitude, sticking, phase, reach
 
         time = huge(time)
+        if (system%damping**2 >= 4.0_dp * system%mass * (system%stiffness + contact)) return
         omega = sqrt((system%stiffness + contact) / system%mass)
         mean = system%stiffness * velocity / (system%stiffness + contact)
         amplitude = hypot(state%v(1) - mean, state%a(1) / omega)
