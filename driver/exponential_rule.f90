@@ -114,8 +114,8 @@ contains
         subroutine evaluate()
             new%x(1) = old%x(1) + q(1)
             new%spring(1) = system%stiffness * (drive - new%x(1))
-            call friction_forces(system, old%statev, system%penetration_step(old%normal, normal), &
-                q, dt, new%statev, new%friction, tangent, report%status)
+            call friction_forces(system, old%statev, normal, q, dt, new%statev, new%friction, &
+                tangent, report%status)
             residual = (balance%known - q(1)) / balance%weight + balance%pull - new%friction(1) &
                 + self%contact * q(1)
             ! what inertia takes to go so far is known to round-off only

@@ -5,13 +5,13 @@ module law_input
     use friction_mod, only : direction_associated, direction_radial, friction_message, &
         friction_update, largest_mu_ratio, law_coulomb, law_rate_state, law_slip_weakening, &
         law_static_kinetic, law_subloading, scheme_backward_euler, scheme_exact_rate, &
-        statev_size, u_cotangent, u_logarithm, u_reciprocal
+        statev_mu, statev_r, statev_size, u_cotangent, u_logarithm, u_reciprocal
     use namelist_input, only : above, at_least, between, namelist_file
     implicit none
     private
 
-    public :: healing_rate, is_subloading, kinetic_coefficient, read_friction, shear_cap, &
-        static_coefficient, typical_coefficient
+    public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
+        kinetic_coefficient, read_friction, shear_cap, static_coefficient, typical_coefficient
 
     character(len=*), parameter :: group = 'friction'
 
@@ -80,6 +80,16 @@ contains
         yes = nint(props(1)) == law_subloading
     end function is_subloading
 
+    !> Is the error of an increment of the third power of its length? Under a shear cap the
+    !> exact-rate scheme books what is dissipated in first order only.
+    pure function is_second_order(props) result(yes)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine, options included
+        logical :: yes
+
+        yes = is_subloading(props) .and. size(props) >= 12
+        if (yes) yes = nint(props(10)) == scheme_exact_rate .and. props(12) <= 0.0_dp
+    end function is_second_order
+
     !> Growth of the friction coefficient of a contact at rest [1/T].
     pure function healing_rate(props, mu) result(rate)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
@@ -89,6 +99,27 @@ contains
         rate = 0.0_dp
         if (is_subloading(props)) rate = props(7) * (props(4) - mu)
     end function healing_rate
+
+    !> What errors of the state variables of blocks mean to their friction coefficients later, in
+    !> first order. The coefficient itself may jump, where slip or a shear cap begins to rule it;
+    !> what the law remembers does not.
+    pure function coefficient_error(props, statev, errors) result(error)
+        real(dp), intent(in) :: props(:)                     !! constants of the friction routine
+        real(dp), intent(in) :: statev(:, :), errors(:, :)   !! state variables, one row a block
+        real(dp) :: error(size(errors, 1))                   !! [-]
+
+        select case (nint(props(1)))
+        case (law_coulomb)
+            error = 0.0_dp
+        case (law_rate_state)
+            error = abs(props(5) * errors(:, statev_r) / statev(:, statev_r))
+        case (law_slip_weakening)
+            error = merge((props(4) - props(5)) / props(6) * abs(errors(:, statev_r)), 0.0_dp, &
+                statev(:, statev_r) < props(6))   ! then it is weak for good
+        case default
+            error = abs(errors(:, statev_mu))
+        end select
+    end function coefficient_error
 
     !> The coefficient that stands for the strength of the contact: the static one, or that of
     !> steady sliding at the reference rate.

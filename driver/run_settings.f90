@@ -3,8 +3,8 @@ module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_settings, only : chain, read_chain
     use field_file, only : netcdf_available
-    use law_input, only : is_subloading, kinetic_coefficient, read_friction, shear_cap, &
-        static_coefficient, typical_coefficient
+    use law_input, only : is_second_order, is_subloading, kinetic_coefficient, read_friction, &
+        shear_cap, static_coefficient, typical_coefficient
     use loading_programme, only : programme, read_drive
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use recorder, only : most_in_csv
@@ -68,6 +68,7 @@ contains
         call read_drive(file, normal, run%drive)
         call read_initial(file, run)
         call read_time(file, run)
+        call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
         if (file%has_group('output')) continue
@@ -77,6 +78,16 @@ contains
         call read_fields(file, run)
         call file%refuse_unknown()
     end subroutine read_settings
+
+    !> A tolerance that is a part of nothing cannot be met.
+    subroutine check_scale(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+
+        if (.not. run%adaptive .or. size(file%faults) > 0) return
+        if (typical_coefficient(run%props) * run%drive%largest_normal() <= 0.0_dp) call &
+            file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
+    end subroutine check_scale
 
     !> When rows of the time series are due.
     subroutine read_rows(file, run)
@@ -252,9 +263,7 @@ contains
         call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
-        run%order = 1
-        if (size(run%props) < 10) return
-        if (is_subloading(run%props) .and. run%props(10) > 0.0_dp) run%order = 2
+        run%order = merge(2, 1, is_second_order(run%props))
     end subroutine read_adaptive
 
 end module run_settings

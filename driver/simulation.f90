@@ -14,6 +14,7 @@ module simulation
     use run_settings, only : settings
     use slider_system, only : ends_periodic, initial_state, place, slider, slider_state, swap_states
     use slip_events, only : moment, slip_event, turning_point
+    use step_control, only : next_row
     use time_integrator, only : step_report
     implicit none
     private
@@ -64,7 +65,7 @@ contains
                 live%result%snap_backs + 1
             live%result%steps = live%result%steps + 1
             if (complete) live%rows_due = live%rows_due + 1
-            if (row_is_due(new)) call record(new)
+            if (row_is_due(live%state, new)) call record(new)
             if (live%rows_due == run%interval) live%rows_due = 0
             call record_fields(live%state, new)
             call watch(live%state, new)
@@ -84,14 +85,12 @@ contains
 
     contains
 
-        function row_is_due(state) result(due)
-            type(slider_state), intent(in) :: state
+        pure function row_is_due(before, now) result(due)
+            type(slider_state), intent(in) :: before, now
             logical :: due
-            real(dp), parameter :: round_off = 1.0e-6_dp
 
-            due = live%rows_due == run%interval .or. live%steps%finished(state)
-            if (run%every > 0.0_dp) due = due .or. abs(state%time / run%every &
-                - anint(state%time / run%every)) < round_off
+            due = live%rows_due == run%interval .or. live%steps%finished(now) &
+                .or. next_row(run%every, before%time) <= now%time
         end function row_is_due
 
         !> A checkpoint, if it is time for one.
@@ -213,8 +212,8 @@ contains
             character(len=*), intent(in) :: why
             character(len=80) :: where
 
-            write (where, '(a, es13.6, a, i0, a)') 'at time ', new%time, ', step ', &
-                live%result%steps + 1, ': '
+            write (where, '(a, es13.6, a, i0, a)') 'at time ', max(live%state%time, new%time), &
+                ', step ', live%result%steps + 1, ': '
             live%result%failure = trim(where) // ' ' // why
         end subroutine fail
 

@@ -9,7 +9,8 @@ module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
-        friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et
+        friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, &
+        statev_u_n
     implicit none
     private
 
@@ -33,7 +34,6 @@ module slider_system
         real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
                                            !! programme; all 1 if not allocated [-]
     contains
-        procedure :: penetration_step
         procedure :: add_coupling, coupling_energy
         procedure :: account
         procedure :: take_stock
@@ -97,8 +97,8 @@ contains
         state%friction = zero
         state%statev = virgin
         state%normal = normal
-        call friction_forces(system, virgin, -normal / system%props(2), zero, 0.0_dp, &
-            state%statev, state%friction, tangent, status)
+        call friction_forces(system, virgin, normal, zero, 0.0_dp, state%statev, &
+            state%friction, tangent, status)
     end subroutine initial_state
 
     !> Puts the blocks where the initial values say.
@@ -214,20 +214,13 @@ contains
         end do
     end subroutine blend
 
-    !> Change of u_n that brings the normal traction from `old` to `new`.
-    pure function penetration_step(self, old, new) result(du_n)
-        class(slider), intent(in) :: self
-        real(dp), intent(in) :: old, new   !! normal tractions [F/L^2]
-        real(dp) :: du_n                   !! [L]
-
-        du_n = -(new - old) / self%props(2)
-    end function penetration_step
-
-    !> Friction force and its derivative on every block, for displacement increments from `old`.
-    subroutine friction_forces(system, old, du_n, dx, dt, new, force, stiffness, status)
+    !> Friction force and its derivative on every block, for displacement increments from `old` to a
+    !> moment of a given normal traction. What has lost it is open, whatever round-off has gathered
+    !> in u_n before.
+    subroutine friction_forces(system, old, normal, dx, dt, new, force, stiffness, status)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: old(:, :)        !! state variables at the start of the step
-        real(dp), intent(in) :: du_n             !! increment of u_n under a load of 1 [L]
+        real(dp), intent(in) :: normal           !! normal traction then [F/L^2]
         real(dp), intent(in) :: dx(:)            !! increment of displacement [L]
         real(dp), intent(in) :: dt               !! [T]
         real(dp), intent(inout) :: new(:, :)     !! state variables at its end
@@ -235,8 +228,10 @@ contains
         real(dp), intent(inout) :: stiffness(:)  !! S df_t/dx [F/L]
         integer, intent(out) :: status           !! the worst: an error, snap-back, or ok
         integer, parameter :: few = 16   !! blocks for which the batch routine takes longer
+        real(dp) :: u_n   ! then, under a load of 1 [L]
         integer :: first, last, part_status
 
+        u_n = -normal / system%props(2)
         status = friction_ok
         if (size(dx) < few) then
             do first = 1, size(dx)
@@ -247,7 +242,7 @@ contains
         else
             do first = 1, size(dx), part
                 last = min(first + part - 1, size(dx))
-                call forces_on_part(system, old, du_n, dx, dt, first, last, new, force, stiffness, &
+                call forces_on_part(system, old, u_n, dx, dt, first, last, new, force, stiffness, &
                     part_status)
                 if (part_status /= friction_ok) status = part_status
                 if (status < 0) return
@@ -261,8 +256,9 @@ contains
             integer, intent(out) :: point_status
             real(dp) :: du(2), statev(statev_size), traction(2), tangent(2, 2)
 
-            du = [du_n, dx(i)]
-            if (allocated(system%load)) du(1) = du_n * system%load(i)
+            du = [u_n, dx(i)]
+            if (allocated(system%load)) du(1) = u_n * system%load(i)
+            du(1) = du(1) - old(i, statev_u_n)
             statev = old(i, :)
             call friction_update(du, dt, system%props, statev, traction, tangent, point_status)
             if (point_status < 0) return
@@ -276,9 +272,9 @@ contains
     !> The same for blocks `first` to `last`, a part that stays in cache: what the friction routine
     !> needs and leaves beside the forces never gets to memory. In three dimensions and from a cache
     !> line on, because the batch routine then works where the numbers are, otherwise on copies.
-    subroutine forces_on_part(system, old, du_n, dx, dt, first, last, new, force, stiffness, status)
+    subroutine forces_on_part(system, old, u_n, dx, dt, first, last, new, force, stiffness, status)
         type(slider), intent(in) :: system
-        real(dp), intent(in) :: old(:, :), du_n, dx(:), dt
+        real(dp), intent(in) :: old(:, :), u_n, dx(:), dt
         integer, intent(in) :: first, last
         real(dp), intent(inout) :: new(:, :), force(:), stiffness(:)
         integer, intent(out) :: status
@@ -292,8 +288,9 @@ contains
         n = last - first + 1
         skipped = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
         tangent(1:n, 1:3, 1:3) => room(skipped + 1:skipped + 9 * n)
-        du(:, 1) = du_n
-        if (allocated(system%load)) du(:, 1) = du_n * system%load(first:last)
+        du(:, 1) = u_n
+        if (allocated(system%load)) du(:, 1) = u_n * system%load(first:last)
+        du(:, 1) = du(:, 1) - old(first:last, statev_u_n)
         du(:, 2) = dx(first:last)
         du(:, 3) = 0.0_dp
         do k = 1, statev_size
@@ -310,20 +307,24 @@ contains
         stiffness(first:last) = system%area * tangent(:, 2, 2)
     end subroutine forces_on_part
 
-    !> A sudden change of the normal traction, at one moment of time.
-    subroutine apply_normal_traction(system, normal, state)
+    !> A sudden change of the normal traction, at one moment of time. A loaded contact whose
+    !> friction depends on the slip rate needs time for it: there the next step has to press it.
+    subroutine apply_normal_traction(system, normal, state, taken)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: normal   !! afterwards [F/L^2]
         type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken    !! or else left to the next step
         real(dp), allocatable :: old(:, :), zero(:), tangent(:)
         integer :: status
 
+        taken = .true.
         if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
         allocate (zero(size(state%x)), tangent(size(state%x)))
         zero = 0.0_dp
         old = state%statev
-        call friction_forces(system, old, system%penetration_step(state%normal, normal), zero, &
-            0.0_dp, state%statev, state%friction, tangent, status)
+        call friction_forces(system, old, normal, zero, 0.0_dp, state%statev, state%friction, &
+            tangent, status)
+        taken = status >= 0
         state%normal = normal
         call set_accelerations(system, state)
     end subroutine apply_normal_traction

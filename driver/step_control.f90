@@ -9,7 +9,7 @@ module step_control
     use exponential_rule, only : exponential
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
-    use law_input, only : is_subloading, typical_coefficient
+    use law_input, only : coefficient_error, is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
@@ -19,9 +19,13 @@ module step_control
     implicit none
     private
 
-    public :: stepper
+    public :: next_row, stepper
 
     integer, parameter :: most_levels = 3
+    !> Part of the time that no adaptive step is shorter than: a third of it is still more than
+    !> round-off.
+    real(dp), parameter :: shortest = 1.0e-14_dp
+    real(dp), parameter :: swing = 0.1_dp   !! that does not matter, part of the tolerated error
 
     type :: stepper
         type(slider) :: system
@@ -55,7 +59,7 @@ module step_control
     contains
         procedure :: begin, take_step, finished
         procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, try, try_levels, &
-            error_of, extrapolate, reversal, opening
+            error_of, extrapolate, next_limit, reversal, opening
     end type stepper
 
     integer, parameter :: most_parts = 2**20   !! of a fixed step
@@ -230,30 +234,37 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         real(dp), parameter :: safety = 0.9_dp, most_growth = 4.0_dp, most_cut = 0.2_dp
-        real(dp) :: limit, end, dt, error, power, event
+        real(dp) :: limit, end, dt, error, power, event, kink
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
+        logical :: turns   !! count, and are foreseen
+        logical :: pressed   !! or is it for this step to do?
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
-        limit = min(self%drive%next_start(old%time), self%t_end, next_row(self%every, old%time))
-        call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old)
-        if (self%exponential) call expect_stick_after_turn(self%system, old, self%rule%contact)
+        limit = self%next_limit(old%time)
+        call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old, &
+            pressed)
+        turns = self%exponential .and. old%normal > 0.0_dp
+        if (old%normal <= 0.0_dp) self%rule%contact = 0.0_dp
+        if (turns) call expect_stick_after_turn(self%system, old, self%rule%contact)
         event = huge(event)
         cuts = 0
         do
             end = min(old%time + self%dt, event)
-            if (self%exponential) end = min(end, next_turn(self%system, old, &
-                self%rule%contact, self%drive%drive_velocity(old%time, piece)))
+            if (turns) end = min(end, next_turn(self%system, old, self%rule%contact, &
+                self%drive%drive_velocity(old%time, piece), swing * self%tolerated))
             end = end_of_step(old%time, end - old%time, limit)
+            kink = self%opening(old, end, piece)
+            if (matters(kink)) end = kink
             dt = end - old%time
             call self%try_levels(old, end, piece, report)
             self%stiffness = max(self%system%stiffness, report%stiffness)
             if (report%status >= 0) then
                 error = self%error_of()
                 if (error <= 1.0_dp) then
-                    event = min(self%opening(old, end, piece), self%reversal(old))
-                    if (event >= end .or. event - old%time <= 1.0e-3_dp * dt) exit
+                    event = self%reversal(old)
+                    if (.not. matters(event)) exit
                     if (cuts == most_cuts) exit
                     cuts = cuts + 1
                     cycle
@@ -263,7 +274,11 @@ contains
                 self%dt = 0.25_dp * dt
             end if
             self%rejected = self%rejected + 1
-            if (self%dt < self%dt_min) then
+            if (self%dt < max(self%dt_min, shortest * old%time)) then
+                ! friction that meets a sudden load slips by the logarithm of the time it has: no
+                ! step is short enough for that
+                error = 1.0_dp
+                if (report%status >= 0 .and. .not. pressed) exit
                 if (report%status >= 0) report%status = friction_no_convergence
                 return
             end if
@@ -276,16 +291,48 @@ contains
         self%dt = min(self%dt_max, dt)
         self%last_error = error
         call self%extrapolate(end - old%time, new)
+
+    contains
+
+        !> Is a time so far into the step, and so far from its end, that it should end there?
+        pure function matters(time) result(yes)
+            real(dp), intent(in) :: time   !! [T]
+            logical :: yes
+
+            yes = time - old%time > max(1.0e-3_dp * (end - old%time), shortest * old%time) &
+                .and. end - time > shortest * end
+        end function matters
+
     end subroutine take_adaptive_step
+
+    !> Where a step from a time ends at the latest: at the next piece, the next row, or the end of
+    !> the run. Of those that are no step apart it is the last.
+    pure function next_limit(self, time) result(limit)
+        class(stepper), intent(in) :: self
+        real(dp), intent(in) :: time   !! [T]
+        real(dp) :: limit              !! [T]
+        real(dp) :: next
+
+        next = time
+        do
+            limit = next
+            next = min(self%drive%next_start(limit), next_row(self%every, limit), self%t_end)
+            if (limit >= self%t_end) return
+            if (limit > time .and. next > limit * (1.0_dp + shortest)) return
+        end do
+    end function next_limit
 
     !> The first multiple of `every` after a time; huge if there is none.
     pure function next_row(every, time) result(next)
         real(dp), intent(in) :: every, time   !! [T]
         real(dp) :: next                      !! [T]
-        real(dp), parameter :: round_off = 1.0e-6_dp
+        real(dp) :: n
 
         next = huge(next)
-        if (every > 0.0_dp) next = every * (aint(time / every + round_off) + 1.0_dp)
+        if (every <= 0.0_dp) return
+        n = anint(time / every)
+        if (every * n <= time) n = n + 1.0_dp
+        next = every * n
     end function next_row
 
     !> A block that has just turned round is carried elastically at first.
@@ -338,8 +385,8 @@ contains
     end subroutine try_levels
 
     !> Estimate of the error, part of the tolerated one: displacement and slip as the force that
-    !> they mean to the spring, velocity by the amplitude that it becomes, friction coefficient by
-    !> the force that it changes.
+    !> they mean to the spring, velocity by the amplitude that it becomes, what the law remembers by
+    !> the friction force that it changes.
     function error_of(self) result(error)
         class(stepper), intent(inout) :: self
         real(dp) :: error
@@ -348,8 +395,9 @@ contains
         associate (e => self%passing, s => self%system)
             error = maxval(max(s%stiffness * abs(e%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(e%v), &
-                s%stiffness * abs(e%statev(:, statev_slip)), &
-                self%pressing * abs(e%statev(:, statev_mu))))
+                s%stiffness * abs(e%statev(:, statev_slip))))
+            error = max(error, self%pressing * maxval(coefficient_error(s%props, &
+                self%ends(2)%statev, e%statev)))
         end associate
         error = error / self%tolerated
     end function error_of
@@ -396,20 +444,20 @@ contains
         class(stepper), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp) :: time   !! [T]; huge without such a moment
-        real(dp), parameter :: negligible = 0.1_dp   !! part of the tolerated error
 
         time = huge(time)
+        if (old%normal <= 0.0_dp) return
         associate (before => old%statev(:, statev_status), &
             after => self%ends(2)%statev(:, statev_status))
             if (.not. self%exponential .and. all(nint(before) == nint(after))) return
         end associate
         time = turn(self%system, old, self%middle)
         if (time < huge(time)) then
-            if (moved(old, time - old%time) > negligible * self%tolerated) return
+            if (moved(old, time - old%time) > swing * self%tolerated) return
         end if
         time = turn(self%system, self%middle, self%ends(2))
         if (time >= huge(time)) return
-        if (moved(self%ends(2), self%ends(2)%time - time) > negligible * self%tolerated) return
+        if (moved(self%ends(2), self%ends(2)%time - time) > swing * self%tolerated) return
         time = huge(time)
 
     contains
@@ -425,28 +473,29 @@ contains
 
     end function reversal
 
-    !> When the normal traction vanishes, or comes back, within a step; huge if neither.
+    !> When the normal traction vanishes, or comes back, within a step; huge if neither. The last
+    !> moment before: a part of a step that ends behind it slips all the way, or not at all.
     pure function opening(self, old, end, piece) result(time)
         class(stepper), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: end       !! of the step [T]
         integer, intent(in) :: piece
         real(dp) :: time                  !! [T]
-        real(dp) :: low, high
+        real(dp) :: middle, high
         logical :: open_before
         integer :: k
 
         time = huge(time)
         open_before = old%normal <= 0.0_dp
-        if (open_before .eqv. self%ends(2)%normal <= 0.0_dp) return
-        low = old%time
+        if (open_before .eqv. self%drive%normal_traction(end, piece) <= 0.0_dp) return
+        time = old%time
         high = end
         do k = 1, 52
-            time = 0.5_dp * (low + high)
-            if ((self%drive%normal_traction(time, piece) <= 0.0_dp) .eqv. open_before) then
-                low = time
+            middle = 0.5_dp * (time + high)
+            if ((self%drive%normal_traction(middle, piece) <= 0.0_dp) .eqv. open_before) then
+                time = middle
             else
-                high = time
+                high = middle
             end if
         end do
     end function opening

@@ -75,7 +75,7 @@ contains
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements at the end [L]
         integer, parameter :: max_halvings = 8, to_and_fro = 10
-        real(dp) :: du_n, inertia, norm, norm_old, scale
+        real(dp) :: inertia, norm, norm_old, scale
         integer :: halving
         logical :: inertial, solved
 
@@ -89,7 +89,6 @@ contains
         else
             inertia = system%damping / (self%gamma * dt)
         end if
-        du_n = system%penetration_step(old%normal, normal)
         new%time = old%time + dt
         new%drive = drive
         new%normal = normal
@@ -161,7 +160,7 @@ contains
             integer :: i
 
             call move_to(dx)
-            call friction_forces(system, old%statev, du_n, dx, dt, new%statev, new%friction, &
+            call friction_forces(system, old%statev, normal, dx, dt, new%statev, new%friction, &
                 tangent, report%status)
             if (report%status < 0) return
             scale = 0.0_dp
@@ -233,7 +232,7 @@ contains
             integer :: i, status
 
             do i = 1, samples
-                call friction_forces(system, old%statev, du_n, dx * i / samples, dt, statev, &
+                call friction_forces(system, old%statev, normal, dx * i / samples, dt, statev, &
                     force, tangent, status)
                 if (status < 0) return
                 if (any(inertia + system%stiffness + tangent <= 0.0_dp)) then

@@ -73,20 +73,24 @@ contains
     end function turn
 
     !> When a block on its springs begins or ends to slip next, were it not damped: its velocity
-    !> swings about the one with which the drive pulls the springs along. Huge if it never does.
-    pure function next_turn(system, state, contact, velocity) result(time)
+    !> swings about the one with which the drive pulls the springs along. Huge if it never does, if
+    !> the damper lets nothing swing, or if the force swings by no more than a negligible one.
+    pure function next_turn(system, state, contact, velocity, negligible) result(time)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: state   !! of one block, with a mass
         real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
         real(dp), intent(in) :: velocity          !! of the drive [L/T]
+        real(dp), intent(in) :: negligible        !! [F]
         real(dp) :: time                          !! [T]
         real(dp), parameter :: just_turned = 0.01_dp, pi = acos(-1.0_dp)
         real(dp) :: omega, mean, amplitude, sticking, phase, reach
 
         time = huge(time)
+        if (system%damping**2 >= 4.0_dp * system%mass * (system%stiffness + contact)) return
         omega = sqrt((system%stiffness + contact) / system%mass)
         mean = system%stiffness * velocity / (system%stiffness + contact)
         amplitude = hypot(state%v(1) - mean, state%a(1) / omega)
+        if (system%mass * omega * amplitude <= negligible) return
         associate (mu => state%statev(1, statev_mu))
             sticking = sticking_velocity(state%statev(1, statev_u_et), mu, &
                 healing_rate(system%props, mu), 0.0_dp)

@@ -237,6 +237,19 @@ class AdaptiveSteps(Columns):
         onset = float(self.rows('case_out/case_events.csv')[0]['onset'])
         self.assertAlmostEqual(onset, 3.98783113667, delta=1e-6)   # as above
 
+    def test_no_rows_come_beside_the_even_times(self):
+        run = self.run_columns(namelist({('time', 'rtol'): '1e-6', ('time', 'dt'): '1e-9', ('output', 'every'): '0.05'}))
+        self.assertEqual(run['time'], [0.0, 0.05, 0.1])   # though the first steps are a few 1e-9 long
+
+    def test_no_step_leads_over_round_off(self):
+        # 0.57 * 100 is a little less than 57, and there is no time in the middle of the second piece
+        run = self.run_columns(namelist({('time', 't_end'): '57', ('time', 'rtol'): '1e-5', ('slider', 'damping'): '1',
+                                         ('output', 'every'): '0.57'}, [('time', 'dt')]))
+        self.assertEqual((len(run['time']), run['time'][-1]), (101, 57.0))
+        run = self.run_columns(namelist({('drive', 'velocity'): '1, 2, 0.5', ('drive', 'duration'): '1, 2.3e-16, 1',
+                                         ('time', 'rtol'): '1e-5', ('time', 't_end'): '2'}, [('time', 'dt')]))
+        self.assertAlmostEqual(run['drive'][-1], 1.5, delta=1e-14)
+
     def test_bad_times_of_rows(self):
         self.refused(namelist({('output', 'every'): '0.1'}), '&output every = 0.1: needs &time rtol')
         self.refused(namelist({('output', 'every'): '-1', ('time', 'rtol'): '1e-6'}), '&output every = -1: must be > 0')
@@ -260,6 +273,83 @@ class AdaptiveSteps(Columns):
         for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
 
+    def test_a_touchdown_in_full_flight_is_met_at_any_tolerance(self):
+        # that moves past the base: a part of a step that ends behind the touchdown would slip all the way
+        result = self.run_text(namelist({('friction', 'scheme'): "'exact_rate'", ('friction', 'kappa'): '600',
+                                         ('drive', 'normal_amplitude'): '11', ('drive', 'normal_frequency'): '0.5',
+                                         ('slider', 'mass'): '10', ('slider', 'damping'): '0', ('time', 'rtol'): '1e-12',
+                                         ('time', 'dt_min'): '1e-7', ('time', 't_end'): '2.2'}, [('time', 'dt')]), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+
+    def test_an_open_contact_does_not_slip(self):
+        # 7.3 + 11.7 sin(10.6 pi t + 1.1) is far from a number of digits: round-off must not hold the contact closed
+        opening = {('slider', 'normal_traction'): '7.3', ('drive', 'normal_amplitude'): '11.7',
+                   ('drive', 'normal_frequency'): '5.3', ('drive', 'normal_phase'): '1.1',
+                   ('friction', 'alpha_n'): '943.7', ('time', 't_end'): '2'}
+        for steps in ({('time', 'dt'): '1e-3'}, {('time', 'dt'): '1e-4', ('time', 'rtol'): '1e-5'}):
+            run = self.run_columns(namelist({**opening, **steps}))
+            load = [7.3 + 11.7 * math.sin(10.6 * math.pi * t + 1.1) for t in run['time']]
+            flight = [k for k in range(1, len(load)) if max(load[k - 1:k + 1]) < -0.1]
+            self.assertGreater(len(flight), 20)
+            for k in flight:
+                self.assertEqual((run['friction_force'][k], run['R'][k]), (0.0, 0.0))
+                self.assertAlmostEqual(run['slip'][k], run['slip'][k - 1], delta=1e-12)
+
+    def test_a_step_of_the_normal_traction_reaches_a_rate_and_state_contact(self):
+        # at rest under twice the load: mu = 0.3 = 0.6 + 0.005 ln(theta v0/d_c) + 0.01 ln(v/v0) leaves no slip to see
+        text = law_namelist('rate_and_state', b='0.005').replace('velocity = 1\n',
+                                                                 'velocity = 1e-3, normal = 10, 20, duration = 5, 5\n')
+        text = text.replace('normal_traction = 10', '').replace('t_end = 0.1', 't_end = 10')
+        text = text.replace('dt = 1e-3', 'rtol = 1e-6') + '&initial mu = 0.6, velocity = 1e-3 /'
+        run = self.run_columns(text)
+        self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 20, delta=1e-12)
+        self.assertAlmostEqual(run['slip'][-1], 5e-3, delta=1e-6)
+
+    def test_a_rate_and_state_contact_that_is_relieved_at_once_slips_at_once(self):
+        # mu would be 1.2 at half the load: no step is short enough for the rate of that
+        text = law_namelist('rate_and_state').replace('velocity = 1\n',
+                                                      'velocity = 1e-3, normal = 10, 5, duration = 5, 5\n')
+        text = text.replace('normal_traction = 10', '').replace('t_end = 0.1', 't_end = 10').replace('damping = 0.01', '')
+        text = text.replace('dt = 1e-3', 'rtol = 1e-6') + '&initial mu = 0.6, velocity = 1e-3 /'
+        run = self.run_columns(text)
+        self.assertLess(run['mu'][-1], 0.7)
+        self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 5, delta=1e-12)
+
+    def test_a_surface_that_has_weakened_for_good_slides_at_tight_tolerances(self):
+        text = law_namelist('slip_weakening', d_c='1e-4').replace('dt = 1e-3', 'rtol = 1e-12')
+        run = self.run_columns(text.replace('t_end = 0.1', 't_end = 6').replace('damping = 0.01', 'damping = 1'))
+        self.assertGreater(run['slip'][-1], 1)
+
+    def test_ringing_that_does_not_matter_takes_no_steps(self):
+        # undamped, the contact rings at 1000 rad/s all the while that the spring is loaded; by 1e-4 of its strength
+        result = self.run_text(namelist({('time', 'rtol'): '1e-3', ('time', 't_end'): '3', ('slider', 'damping'): '0',
+                                         ('drive', 'velocity'): '1e-2'}, [('time', 'dt')]), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 300)
+
+    def test_contacts_whose_coefficient_jumps_take_few_steps(self):
+        # it jumps at a touchdown, and where a shear cap begins to hold; what the law remembers does not
+        opening = {('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5'}
+        for cap, changes in (('0', opening), ('1.5', {})):
+            text = law_namelist('rate_and_state', b='0', tau_max=cap)
+            text = text.replace('dt = 1e-3', 'rtol = 1e-8').replace('t_end = 0.1', 't_end = 4')
+            for (_, key), value in changes.items():
+                text = text.replace('velocity = 1\n', f'velocity = 1\n  {key} = {value}\n')
+            result = self.run_text(text, '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 30000)
+
+    def test_energy_balance_closes_under_a_shear_cap(self):
+        # sliding to and fro while the load falls; the cap holds at first
+        text = namelist({('friction', 'scheme'): "'exact_rate'", ('friction', 'tau_max'): '1.5',
+                         ('friction', 'kappa'): '0', ('friction', 'xi'): '0', ('drive', 'normal'): '10, 1',
+                         ('drive', 'duration'): '1, 10', ('drive', 'normal_change'): "'ramp'",
+                         ('slider', 'mass'): '1', ('time', 't_end'): '11', ('time', 'rtol'): '1e-7'}, [('time', 'dt')])
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        work, unbalanced = (float(result.stdout.split(key)[1].split()[0]) for key in ('work of the drive', 'unbalanced'))
+        self.assertLess(abs(unbalanced), 1e-4 * work)   # 6e-3 where the order is taken for the second
+
     def test_quasi_static_steps_adapt_too(self):
         changes = {**QuasiStatic.steady, ('drive', 'velocity'): '0.1', ('time', 'rtol'): '1e-6'}
         run = self.run_columns(namelist(changes, [('time', 'dt')]))
@@ -279,6 +369,9 @@ class AdaptiveSteps(Columns):
                      '&time dt_min = 1: needs rtol', '&time dt_max = 1: needs rtol')
         self.refused(namelist({('time', 'rtol'): '1'}), '&time rtol = 1: must be from 1e-12 to 0.1\n')
         self.refused(namelist({('time', 'beta'): '0'}), '&time beta = 0: must be from 0.01 to 1\n')
+        for changes in ({('friction', 'mu_s'): '0', ('friction', 'mu_k'): '0'}, {('drive', 'normal'): '0'}):
+            self.refused(namelist({('time', 'rtol'): '1e-6', **changes}),
+                         '&time rtol = 1e-6: is a part of the static friction force, which is 0 here')
         self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
                      '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
         self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
