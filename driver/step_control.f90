@@ -15,7 +15,7 @@ module step_control
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
-    use turning_times, only : next_turn, turn
+    use turning_times, only : next_turn, turn, visible_swing
     implicit none
     private
 
@@ -46,6 +46,7 @@ module step_control
         logical :: exponential = .false.   !! steps by the exponential rule, not by `method`
         type(exponential) :: rule
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
+        real(dp) :: noticed = 0.0_dp       !! swing of the drive spring that steps have to show [F]
         real(dp) :: pressing = 0.0_dp      !! largest normal force [F]
         integer :: order = 1               !! of the method, with the friction law in it
         real(dp) :: stiffness = 0.0_dp     !! against displacements in the last step [F/L]
@@ -71,6 +72,8 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start   !! the state at time 0
+        real(dp), parameter :: noticed = 1.0e-3_dp   !! part of the static friction force; slip
+                                                     !! events begin at ten times as much
 
         self%system = system
         self%drive = run%drive
@@ -92,6 +95,7 @@ contains
         self%pressing = run%area * run%drive%largest_normal()
         self%tolerated = run%rtol * max(typical_coefficient(run%props) * self%pressing, &
             tiny(1.0_dp) / epsilon(1.0_dp))
+        self%noticed = noticed * self%tolerated / run%rtol
         call self%choose_rule(run, size(start%x))
         self%middle = start
         self%passing = start
@@ -252,6 +256,8 @@ contains
         cuts = 0
         do
             end = min(old%time + self%dt, event)
+            if (self%exponential) end = min(end, old%time + visible_swing(self%system, old, &
+                self%rule%contact, self%drive%drive_velocity(old%time, piece), self%noticed))
             if (turns) end = min(end, next_turn(self%system, old, self%rule%contact, &
                 self%drive%drive_velocity(old%time, piece), swing * self%tolerated))
             end = end_of_step(old%time, end - old%time, limit)

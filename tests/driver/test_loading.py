@@ -227,6 +227,19 @@ class AdaptiveSteps(Columns):
         for t in (0.03, 0.06, 0.1):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-15)
 
+    def test_long_steps_show_all_falls_of_the_force(self):
+        # While the contact is open the block swings on its spring, exactly in a step of any length; each fall of the
+        # force counts as an event all the same. Newmark's steps see them because they are short.
+        counts = []
+        for changes in ({('time', 'rtol'): '1e-5'}, {('time', 'rtol'): '1e-7', ('time', 'rho_infinity'): '1'}):
+            text = namelist({('time', 't_end'): '10', ('drive', 'velocity'): '1', ('drive', 'duration'): '3, 2, 5',
+                             ('drive', 'normal'): '10, 0, 10', **changes}, [('time', 'dt')])
+            result = self.run_text(text, '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            counts.append(len(self.rows('case_out/case_events.csv')))
+        self.assertEqual(counts[0], counts[1])
+        self.assertGreater(counts[0], 4)
+
     def test_rows_come_at_even_times_and_do_not_change_the_events(self):
         text = namelist({('time', 't_end'): '5', ('time', 'rtol'): '1e-8', ('friction', 'scheme'): "'exact_rate'",
                          ('output', 'every'): '0.07'}, [('time', 'dt')])
