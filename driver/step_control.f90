@@ -59,8 +59,8 @@ module step_control
         type(slider_state), private :: passing             !! room for a state
     contains
         procedure :: begin, take_step, finished
-        procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, try, try_levels, &
-            error_of, extrapolate, next_limit, reversal, opening
+        procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, next_end, try, &
+            try_levels, error_of, extrapolate, next_limit, reversal, opening
     end type stepper
 
     integer, parameter :: most_parts = 2**20   !! of a fixed step
@@ -237,11 +237,10 @@ contains
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
-        real(dp), parameter :: safety = 0.9_dp, most_growth = 4.0_dp, most_cut = 0.2_dp
+        real(dp), parameter :: safety = 0.9_dp, most_cut = 0.2_dp
         real(dp) :: limit, end, dt, error, power, event, kink
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
-        logical :: turns   !! count, and are foreseen
         logical :: pressed   !! or is it for this step to do?
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
@@ -249,18 +248,15 @@ contains
         limit = self%next_limit(old%time)
         call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old, &
             pressed)
-        turns = self%exponential .and. old%normal > 0.0_dp
-        if (old%normal <= 0.0_dp) self%rule%contact = 0.0_dp
-        if (turns) call expect_stick_after_turn(self%system, old, self%rule%contact)
+        if (old%normal <= 0.0_dp) then
+            self%rule%contact = 0.0_dp
+        else if (self%exponential) then
+            call expect_stick_after_turn(self%system, old, self%rule%contact)
+        end if
         event = huge(event)
         cuts = 0
         do
-            end = min(old%time + self%dt, event)
-            if (self%exponential) end = min(end, old%time + visible_swing(self%system, old, &
-                self%rule%contact, self%drive%drive_velocity(old%time, piece), self%noticed))
-            if (turns) end = min(end, next_turn(self%system, old, self%rule%contact, &
-                self%drive%drive_velocity(old%time, piece), swing * self%tolerated))
-            end = end_of_step(old%time, end - old%time, limit)
+            end = end_of_step(old%time, min(self%next_end(old, piece), event) - old%time, limit)
             kink = self%opening(old, end, piece)
             if (matters(kink)) end = kink
             dt = end - old%time
@@ -289,16 +285,23 @@ contains
                 return
             end if
         end do
-        error = max(error, 1.0e-4_dp)
-        dt = dt * min(most_growth, safety * error**(-0.7_dp * power) &
-            * self%last_error**(0.4_dp * power))
-        ! a step that an event has cut says nothing against the one that was to be taken
-        if (end < old%time + 0.99_dp * self%dt) dt = max(dt, self%dt)
-        self%dt = min(self%dt_max, dt)
-        self%last_error = error
+        call lengthen()
         call self%extrapolate(end - old%time, new)
 
     contains
+
+        !> The next step, by the errors of the last two. One that an event has cut says nothing
+        !> against the one that was to be taken.
+        subroutine lengthen()
+            real(dp), parameter :: most_growth = 4.0_dp
+
+            error = max(error, 1.0e-4_dp)
+            dt = dt * min(most_growth, safety * error**(-0.7_dp * power) &
+                * self%last_error**(0.4_dp * power))
+            if (end < old%time + 0.99_dp * self%dt) dt = max(dt, self%dt)
+            self%dt = min(self%dt_max, dt)
+            self%last_error = error
+        end subroutine lengthen
 
         !> Is a time so far into the step, and so far from its end, that it should end there?
         pure function matters(time) result(yes)
@@ -340,6 +343,23 @@ contains
         if (every * n <= time) n = n + 1.0_dp
         next = every * n
     end function next_row
+
+    !> Where the step should end, as far as error and oscillation have a say.
+    pure function next_end(self, old, piece) result(end)
+        class(stepper), intent(in) :: self
+        type(slider_state), intent(in) :: old
+        integer, intent(in) :: piece
+        real(dp) :: end   !! [T]
+        real(dp) :: velocity
+
+        end = old%time + self%dt
+        if (.not. self%exponential) return
+        velocity = self%drive%drive_velocity(old%time, piece)
+        end = min(end, old%time + visible_swing(self%system, old, self%rule%contact, velocity, &
+            self%noticed))
+        if (old%normal > 0.0_dp) end = min(end, next_turn(self%system, old, self%rule%contact, &
+            velocity, swing * self%tolerated))
+    end function next_end
 
     !> A block that has just turned round is carried elastically at first.
     pure subroutine expect_stick_after_turn(system, state, contact)
