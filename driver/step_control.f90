@@ -286,7 +286,7 @@ contains
             end if
         end do
         call lengthen()
-        call self%extrapolate(end - old%time, new)
+        call self%extrapolate(old, new)
 
     contains
 
@@ -431,9 +431,9 @@ contains
     !> The best of what is known about the end of the step. Extrapolation would amplify an
     !> oscillation that is faster than a step of Newmark's, which takes a mass, and must not leave
     !> the range of the law's variables.
-    subroutine extrapolate(self, dt, new)
+    subroutine extrapolate(self, old, new)
         class(stepper), intent(inout) :: self
-        real(dp), intent(in) :: dt          !! [T]
+        type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
         real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
 
@@ -442,7 +442,7 @@ contains
             new%drive = finest_end%drive
             new%normal = finest_end%normal
             if (.not. self%exponential .and. self%system%mass > 0.0_dp &
-                .and. self%stiffness * dt**2 > self%system%mass) then
+                .and. self%stiffness * (new%time - old%time)**2 > self%system%mass) then
                 call blend(self%ends(:2), finest, new)
             else
                 call blend(self%ends(:self%levels), self%weights(:self%levels), new)
@@ -458,8 +458,10 @@ contains
                 end if
             end associate
         end associate
-        new%statev(:, statev_slip) = max(0.0_dp, new%statev(:, statev_slip))
-        new%statev(:, statev_dissipation) = max(0.0_dp, new%statev(:, statev_dissipation))
+        ! what accumulates never falls, not even by round-off
+        new%statev(:, statev_slip) = max(old%statev(:, statev_slip), new%statev(:, statev_slip))
+        new%statev(:, statev_dissipation) = max(old%statev(:, statev_dissipation), &
+            new%statev(:, statev_dissipation))
         new%spring = self%system%stiffness * (new%drive - new%x)
         call set_accelerations(self%system, new)
     end subroutine extrapolate

@@ -198,6 +198,8 @@ class AdaptiveSteps(Columns):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         onsets = [float(row['onset']) for row in self.rows('case_out/case_events.csv')]
         self.assertEqual(len(onsets), 4)
+        slip = [float(row['slip']) for row in self.rows('case_out/case.csv')]
+        self.assertEqual(slip, sorted(slip))   # what accumulates never falls, not even by round-off
         for computed, true in zip(onsets, truth):
             self.assertLess(abs(computed - true), 3e-7)
         # an explicit method takes 1000 steps a second: the contact rings at 1000 rad/s
