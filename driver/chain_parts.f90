@@ -74,8 +74,9 @@ contains
 
         solved = .false.
         iterations = 0
-        this = chain_step(drive, normal, dt, margin_of(method, system, dt), 0)
-        if (size(old%x) > most_at_once .and. this%margin <= widest_margin) then
+        this = chain_step(drive, normal, dt, margin=huge(this%margin), parts=0)
+        if (size(old%x) > most_at_once) this%margin = margin_of(method, system, dt)
+        if (this%margin <= widest_margin) then
             this%parts = (size(old%x) - 1) / (width - 2 * this%margin) + 1
             call solve_parts(self, method, system, this, old, new, report, guess)
             if (report%status >= 0) solved = seams_hold(self, method, system, this, new)

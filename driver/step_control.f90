@@ -15,7 +15,7 @@ module step_control
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
     use time_integrator, only : generalised_alpha, newmark, step_report
-    use turning_times, only : next_turn, turn, visible_swing
+    use turning_times, only : next_turn, oscillation_of, turn, visible_swing
     implicit none
     private
 
@@ -30,7 +30,7 @@ module step_control
     type :: stepper
         type(slider) :: system
         type(newmark) :: method
-        type(parted_chain), private :: blocks   !! takes its steps with several blocks
+        type(parted_chain), private :: blocks   !! takes its steps, of one block or many
         type(programme) :: drive
         real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
         real(dp) :: t_end = 0.0_dp     !! [T]
@@ -182,13 +182,8 @@ contains
             call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
                 present(first), guess)
         else
-            if (size(old%x) > 1) then
-                call self%blocks%step(self%method, self%system, drive, normal, time - old%time, &
-                    old, new, report, guess)
-            else
-                call self%method%step(self%system, drive, normal, time - old%time, old, new, &
-                    report, guess)
-            end if
+            call self%blocks%step(self%method, self%system, drive, normal, time - old%time, old, &
+                new, report, guess)
             if (report%status >= 0) call self%system%account(old, new)
         end if
         new%time = time
@@ -350,15 +345,15 @@ contains
         type(slider_state), intent(in) :: old
         integer, intent(in) :: piece
         real(dp) :: end   !! [T]
-        real(dp) :: velocity
 
         end = old%time + self%dt
         if (.not. self%exponential) return
-        velocity = self%drive%drive_velocity(old%time, piece)
-        end = min(end, old%time + visible_swing(self%system, old, self%rule%contact, velocity, &
-            self%noticed))
-        if (old%normal > 0.0_dp) end = min(end, next_turn(self%system, old, self%rule%contact, &
-            velocity, swing * self%tolerated))
+        associate (now => oscillation_of(self%system, old, self%rule%contact, &
+            self%drive%drive_velocity(old%time, piece)))
+            end = min(end, old%time + visible_swing(self%system, now, self%noticed))
+            if (old%normal > 0.0_dp) end = min(end, next_turn(self%system, old, now, &
+                swing * self%tolerated))
+        end associate
     end function next_end
 
     !> A block that has just turned round is carried elastically at first.

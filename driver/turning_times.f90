@@ -7,7 +7,7 @@ module turning_times
     implicit none
     private
 
-    public :: next_turn, turn, visible_swing
+    public :: next_turn, oscillation_of, turn, visible_swing
 
     !> How a block would swing on its springs, were it not damped.
     type :: oscillation
@@ -18,17 +18,20 @@ module turning_times
 
 contains
 
-    !> Velocity at which the traction grows no faster than the strength: slower, a block sticks.
-    !> Nearly zero, but for a contact that heals or is being loaded.
-    elemental function sticking_velocity(u_et, mu, healing, loading) result(velocity)
-        real(dp), intent(in) :: u_et      !! elastic displacement of the contact [L]
-        real(dp), intent(in) :: mu        !! friction coefficient [-]
-        real(dp), intent(in) :: healing   !! its growth at rest [1/T]
+    !> Velocity at which the traction of block `i` grows no faster than its strength: slower, it
+    !> sticks. Nearly zero, but for a contact that heals or is being loaded.
+    pure function sticking_velocity(system, state, i, loading) result(velocity)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: state
+        integer, intent(in) :: i
         real(dp), intent(in) :: loading   !! growth of the normal traction, part of it [1/T]
         real(dp) :: velocity              !! [L/T]
 
         velocity = 0.0_dp
-        if (mu > 0.0_dp) velocity = u_et * (healing / mu + loading)
+        associate (mu => state%statev(i, statev_mu))
+            if (mu > 0.0_dp) velocity = state%statev(i, statev_u_et) &
+                * (healing_rate(system%props, mu) / mu + loading)
+        end associate
     end function sticking_velocity
 
     !> When the first block to do so begins or ends to slip between two states: its velocity passes
@@ -46,8 +49,8 @@ contains
         if (a%normal > 0.0_dp .and. b%normal > 0.0_dp) loading = 2.0_dp * (b%normal - a%normal) &
             / (dt * (a%normal + b%normal))
         do i = 1, size(a%x)
-            v_a = above(a)
-            v_b = above(b)
+            v_a = a%v(i) - sticking_velocity(system, a, i, loading)
+            v_b = b%v(i) - sticking_velocity(system, b, i, loading)
             if (v_a * v_b >= 0.0_dp) cycle
             low = 0.0_dp
             high = 1.0_dp
@@ -63,42 +66,22 @@ contains
             end do
             time = min(time, a%time + s * dt)
         end do
-
-    contains
-
-        !> Velocity beyond the one at which block `i` sticks.
-        pure function above(state) result(velocity)
-            type(slider_state), intent(in) :: state
-            real(dp) :: velocity   !! [L/T]
-
-            associate (mu => state%statev(i, statev_mu))
-                velocity = state%v(i) - sticking_velocity(state%statev(i, statev_u_et), mu, &
-                    healing_rate(system%props, mu), loading)
-            end associate
-        end function above
-
     end function turn
 
-    !> When a block on its springs begins or ends to slip next, were it not damped. Huge if it never
-    !> does, or if it swings by no more than a force that does not matter.
-    pure function next_turn(system, state, contact, velocity, negligible) result(time)
+    !> When a block that swings begins or ends to slip next. Huge if it never does, or if it swings
+    !> by no more than a force that does not matter.
+    pure function next_turn(system, state, swing, negligible) result(time)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: state   !! of one block, with a mass
-        real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
-        real(dp), intent(in) :: velocity          !! of the drive [L/T]
+        type(oscillation), intent(in) :: swing    !! of that block
         real(dp), intent(in) :: negligible        !! [F]
         real(dp) :: time                          !! [T]
         real(dp), parameter :: just_turned = 0.01_dp, pi = acos(-1.0_dp)
-        type(oscillation) :: swing
         real(dp) :: sticking, phase, reach
 
         time = huge(time)
-        swing = oscillation_of(system, state, contact, velocity)
         if (system%mass * swing%omega * swing%amplitude <= negligible) return
-        associate (mu => state%statev(1, statev_mu))
-            sticking = sticking_velocity(state%statev(1, statev_u_et), mu, &
-                healing_rate(system%props, mu), 0.0_dp)
-        end associate
+        sticking = sticking_velocity(system, state, 1, 0.0_dp)
         if (swing%amplitude <= abs(sticking - swing%mean)) return
         phase = atan2(state%a(1) / swing%omega, state%v(1) - swing%mean)   ! of the velocity's crest
         reach = acos((sticking - swing%mean) / swing%amplitude)            ! from there to a turn
@@ -109,18 +92,14 @@ contains
 
     !> The longest step that shows how the force of the drive spring swings; huge if that does not
     !> swing by as much as one would notice.
-    pure function visible_swing(system, state, contact, velocity, noticed) result(dt)
+    pure function visible_swing(system, swing, noticed) result(dt)
         type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: state   !! of one block, with a mass
-        real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
-        real(dp), intent(in) :: velocity          !! of the drive [L/T]
-        real(dp), intent(in) :: noticed           !! [F]
-        real(dp) :: dt                            !! [T]
+        type(oscillation), intent(in) :: swing   !! of one block
+        real(dp), intent(in) :: noticed          !! [F]
+        real(dp) :: dt                           !! [T]
         real(dp), parameter :: twelfth = acos(-1.0_dp) / 6.0_dp   !! of a period [-]
-        type(oscillation) :: swing
 
         dt = huge(dt)
-        swing = oscillation_of(system, state, contact, velocity)
         if (system%stiffness * swing%amplitude > noticed * swing%omega) dt = twelfth / swing%omega
     end function visible_swing
 
@@ -128,8 +107,9 @@ contains
     !> damper keeps it from swinging has no amplitude.
     pure function oscillation_of(system, state, contact, velocity) result(swing)
         type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: state
-        real(dp), intent(in) :: contact, velocity   !! [F/L], [L/T]
+        type(slider_state), intent(in) :: state   !! of one block, with a mass
+        real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
+        real(dp), intent(in) :: velocity          !! of the drive [L/T]
         type(oscillation) :: swing
         real(dp) :: stiffness
 
