@@ -6,7 +6,7 @@ module simulation
     use checkpoint, only : snapshot, write_checkpoint
     use friction_mod, only : friction_message, friction_no_convergence, friction_snap_back, &
         statev_slip
-    use law_input, only : typical_coefficient
+    use law_facts, only : typical_coefficient
     use platform, only : interrupted, seconds
     use progress_bar, only : progress
     use recorder, only : csv_recorder

@@ -5,13 +5,12 @@ module law_input
     use friction_mod, only : direction_associated, direction_radial, friction_message, &
         friction_update, largest_mu_ratio, law_coulomb, law_rate_state, law_slip_weakening, &
         law_static_kinetic, law_subloading, scheme_backward_euler, scheme_exact_rate, &
-        statev_mu, statev_r, statev_size, u_cotangent, u_logarithm, u_reciprocal
+        statev_size, u_cotangent, u_logarithm, u_reciprocal
     use namelist_input, only : above, at_least, between, namelist_file
     implicit none
     private
 
-    public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
-        kinetic_coefficient, read_friction, shear_cap, static_coefficient, typical_coefficient
+    public :: read_friction
 
     character(len=*), parameter :: group = 'friction'
 
@@ -72,92 +71,6 @@ contains
         if (direction == 'radial') number = direction_radial
         options = [tau_max, mu_ratio, real(number, dp)]
     end subroutine read_options
-
-    pure function is_subloading(props) result(yes)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        logical :: yes
-
-        yes = nint(props(1)) == law_subloading
-    end function is_subloading
-
-    !> Is the error of an increment of the third power of its length? Under a shear cap the
-    !> exact-rate scheme books what is dissipated in first order only.
-    pure function is_second_order(props) result(yes)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine, options included
-        logical :: yes
-
-        yes = is_subloading(props) .and. size(props) >= 12
-        if (yes) yes = nint(props(10)) == scheme_exact_rate .and. props(12) <= 0.0_dp
-    end function is_second_order
-
-    !> Growth of the friction coefficient of a contact at rest [1/T].
-    pure function healing_rate(props, mu) result(rate)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp), intent(in) :: mu         !! friction coefficient [-]
-        real(dp) :: rate
-
-        rate = 0.0_dp
-        if (is_subloading(props)) rate = props(7) * (props(4) - mu)
-    end function healing_rate
-
-    !> What errors of the state variables of blocks mean to their friction coefficients later, in
-    !> first order. The coefficient itself may jump, where slip or a shear cap begins to rule it;
-    !> what the law remembers does not.
-    pure function coefficient_error(props, statev, errors) result(error)
-        real(dp), intent(in) :: props(:)                     !! constants of the friction routine
-        real(dp), intent(in) :: statev(:, :), errors(:, :)   !! state variables, one row a block
-        real(dp) :: error(size(errors, 1))                   !! [-]
-
-        select case (nint(props(1)))
-        case (law_coulomb)
-            error = 0.0_dp
-        case (law_rate_state)
-            error = abs(props(5) * errors(:, statev_r) / statev(:, statev_r))
-        case (law_slip_weakening)
-            error = merge((props(4) - props(5)) / props(6) * abs(errors(:, statev_r)), 0.0_dp, &
-                statev(:, statev_r) < props(6))   ! then it is weak for good
-        case default
-            error = abs(errors(:, statev_mu))
-        end select
-    end function coefficient_error
-
-    !> The coefficient that stands for the strength of the contact: the static one, or that of
-    !> steady sliding at the reference rate.
-    pure function typical_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: mu                     !! [-]
-
-        mu = props(4)
-        if (nint(props(1)) == law_rate_state) mu = max(mu, props(8))
-    end function typical_coefficient
-
-    !> The most that friction can be while the surface rests; infinite where there is no such bound.
-    pure function static_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! of the friction routine
-        real(dp) :: mu                     !! [-]
-
-        mu = props(4)
-        if (nint(props(1)) == law_rate_state) mu = huge(mu)
-    end function static_coefficient
-
-    !> The shear cap, huge without one.
-    pure function shear_cap(props) result(tau_max)
-        real(dp), intent(in) :: props(:)   !! as `read_friction` makes them
-        real(dp) :: tau_max                !! [F/L^2]
-
-        tau_max = props(size(props) - 2)   ! after it mu_ratio and direction
-        if (tau_max <= 0.0_dp) tau_max = huge(tau_max)
-    end function shear_cap
-
-    !> The friction coefficient that is left when the surface has slid far, where that is a constant
-    !> of the law; else the static one.
-    pure function kinetic_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! of the friction routine
-        real(dp) :: mu                     !! [-]
-
-        mu = props(5)
-        if (any(nint(props(1)) == [law_coulomb, law_rate_state])) mu = typical_coefficient(props)
-    end function kinetic_coefficient
 
     subroutine read_subloading(file, own)
         type(namelist_file), intent(inout) :: file
@@ -251,7 +164,7 @@ contains
         if (mu_s < mu_k) call file%reject(group, 'mu_s', 'must be >= mu_k')
     end subroutine read_coefficients
 
-    !> The routine itself has the last word on its constants.
+    !> The routine itself decides whether it takes the constants.
     subroutine try_props(file, props)
         type(namelist_file), intent(inout) :: file
         real(dp), intent(in) :: props(:)

@@ -9,7 +9,7 @@ module step_control
     use exponential_rule, only : exponential
     use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status
-    use law_input, only : coefficient_error, is_subloading, typical_coefficient
+    use law_facts, only : coefficient_error, is_subloading, typical_coefficient
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &

@@ -2,7 +2,7 @@
 module turning_times
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : statev_mu, statev_u_et
-    use law_input, only : healing_rate
+    use law_facts, only : healing_rate
     use slider_system, only : slider, slider_state
     implicit none
     private

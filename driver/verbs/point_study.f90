@@ -7,7 +7,8 @@ module point_study
     use namelist_input, only : namelist_file, read_namelist_file
     use point_picture, only : draw_point_picture
     use point_recorder, only : point_csv
-    use point_settings, only : group, point_run, read_point_settings
+    use point_reader, only : group, read_point_settings
+    use point_settings, only : point_run
     use progress_bar, only : progress
     use study, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, is_readable, &
         tell_failure

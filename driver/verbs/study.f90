@@ -4,14 +4,17 @@ module study
     use chain_picture, only : draw_catalogue, draw_fields
     use checkpoint, only : read_checkpoint, snapshot
     use command_line, only : command
+    use field_file, only : netcdf_available
     use namelist_input, only : namelist_file, read_namelist_file
     use picture, only : draw_picture
     use platform, only : make_directory, remove_file, watch_for_interrupts
     use recorder, only : csv_recorder, most_in_csv
-    use run_settings, only : read_settings, settings
+    use run_reader, only : read_settings
+    use run_settings, only : settings
     use simulation, only : outcome, simulate, start_run
     use summary, only : print_event_times, print_summary
-    use sweep_settings, only : read_sweep, sweep_plan
+    use sweep_reader, only : read_sweep
+    use sweep_settings, only : sweep_plan
     implicit none
     private
 
@@ -38,6 +41,9 @@ contains
             call read_sweep(file, plan)
         else
             call read_settings(file, run)
+            if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
+                .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
+                // 'blocks needs NetCDF, which this program was built without')
         end if
         if (size(file%faults) > 0) then
             write (error_unit, '(a)', advance='no') file%describe_faults()

@@ -14,7 +14,8 @@ module sweep
     use study, only : exit_bad_input, exit_done, exit_failed
     use sweep_journal, only : journal, text_line
     use sweep_picture, only : draw_sweep
-    use sweep_settings, only : read_sweep, sweep_plan
+    use sweep_reader, only : read_sweep
+    use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
     use text_file, only : output_file
     implicit none

@@ -1,14 +1,16 @@
-!> What the point mode is told to do: the groups &friction and &point, with defaults and rules.
-module point_settings
+!> Reads what the point mode is told to do: the groups &friction and &point, their defaults and
+!> rules.
+module point_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use csv_table, only : csv => table, name_length, read_table
     use law_input, only : read_friction
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
+    use point_settings, only : point_run
     implicit none
     private
 
-    public :: group, point_run, read_point_settings
+    public :: group, read_point_settings
 
     character(len=*), parameter :: group = 'point'
     character(len=2), parameter :: directions(3) = ['n ', 't1', 't2']
@@ -16,12 +18,6 @@ module point_settings
         'control_n', 'control_t1', 'control_t2', 'target_n', 'target_t1', 'target_t2']
     character(len=12), parameter :: controls(2) = ['displacement', 'traction    ']
     integer, parameter :: by_displacement = 1   !! place in `controls`
-
-    type :: point_run
-        real(dp), allocatable :: props(:)   !! constants of the friction routine
-        type(path) :: loading
-        logical :: tangent                  !! the CSV file shows the tangent
-    end type point_run
 
 contains
 
@@ -206,4 +202,4 @@ contains
         end do
     end subroutine find_columns
 
-end module point_settings
+end module point_reader

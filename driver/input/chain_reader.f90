@@ -1,21 +1,13 @@
-!> What the input file says about a chain of blocks: group &chain.
-module chain_settings
-    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+!> The group &chain of the input file.
+module chain_reader
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_settings, only : chain
     use namelist_input, only : above, at_least, between, namelist_file
     use slider_system, only : ends_fixed, ends_free, ends_periodic
     implicit none
     private
 
-    public :: chain, read_chain, scattered
-
-    type :: chain
-        integer :: n_blocks = 1
-        real(dp) :: coupling = 0.0_dp    !! stiffness between neighbours [F/L]
-        integer :: ends = ends_free
-        real(dp) :: scatter = 0.0_dp     !! of the blocks' normal traction, relative [-]
-        integer :: seed = 1
-        real(dp) :: slip_rate = 0.0_dp   !! from which on slip belongs to an event [L/T]
-    end type chain
+    public :: read_chain
 
     character(len=*), parameter :: group = 'chain'
 
@@ -47,26 +39,4 @@ contains
         if (blocks%n_blocks == 1 .and. blocks%ends == ends_periodic) blocks%ends = ends_free
     end subroutine read_chain
 
-    !> Random numbers from 1 - scatter to 1 + scatter, the same on every machine: Marsaglia's
-    !> xorshift generator of 64 bits (J. Stat. Softw. 8(14), 2003), from a seed that is stirred
-    !> first.
-    pure function scattered(blocks) result(factors)
-        type(chain), intent(in) :: blocks
-        real(dp), allocatable :: factors(:)   !! one a block [-]
-        integer(int64), parameter :: origin = 88172645463325252_int64
-        integer, parameter :: stirs = 64
-        integer(int64) :: bits
-        integer :: i
-
-        allocate (factors(blocks%n_blocks))
-        bits = ieor(origin, int(blocks%seed, int64))
-        do i = 1 - stirs, blocks%n_blocks
-            bits = ieor(bits, shiftl(bits, 13))
-            bits = ieor(bits, shiftr(bits, 7))
-            bits = ieor(bits, shiftl(bits, 17))
-            if (i > 0) factors(i) = 1.0_dp + blocks%scatter &
-                * (2.0_dp * scale(real(shiftr(bits, 11), dp), -53) - 1.0_dp)
-        end do
-    end function scattered
-
-end module chain_settings
+end module chain_reader

@@ -1,43 +1,17 @@
-!> What a run is told to do: the groups and keys of the input file, with their defaults and rules.
-module run_settings
+!> Reads what a run is told to do: the groups and keys of the input file, their defaults and rules.
+module run_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use chain_settings, only : chain, read_chain
-    use field_file, only : netcdf_available
-    use law_input, only : is_second_order, is_subloading, kinetic_coefficient, read_friction, &
-        shear_cap, static_coefficient, typical_coefficient
-    use loading_programme, only : programme, read_drive
+    use chain_reader, only : read_chain
+    use drive_reader, only : read_drive
+    use law_facts, only : is_second_order, is_subloading, kinetic_coefficient, shear_cap, &
+        static_coefficient, typical_coefficient
+    use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
-    use recorder, only : most_in_csv
-    use slider_system, only : initial_values
+    use run_settings, only : settings
     implicit none
     private
 
-    public :: read_settings, settings
-
-    type :: settings
-        real(dp), allocatable :: props(:)   !! constants of the friction routine
-        real(dp) :: mass                    !! 0: quasi-static [F T^2/L]
-        real(dp) :: stiffness               !! of the drive spring [F/L]
-        real(dp) :: damping                 !! [F T/L]
-        real(dp) :: area                    !! apparent contact area [L^2]
-        type(initial_values) :: initial
-        type(programme) :: drive
-        type(chain) :: chain
-        real(dp) :: t_end, dt               !! end of the run, step or first step [T]
-        real(dp) :: checkpoint              !! time between two checkpoints, by the clock [s]
-        logical :: adaptive                 !! the error chooses the steps
-        real(dp) :: rtol = 0.0_dp           !! error in a step, part of the static friction force
-        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
-        integer :: order = 1                !! of the method with the friction law in it
-        real(dp) :: beta, gamma             !! of Newmark's method
-        real(dp) :: rho_infinity   !! of the generalised-alpha method; negative: not asked for
-        real(dp) :: tolerance               !! of the force residual, relative to the largest force
-        integer :: max_iterations           !! of Newton's method in a step
-        integer :: interval                 !! steps between two rows of the CSV file
-        real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
-        integer :: fields                   !! steps between two pictures of the chain; 0: none
-        integer :: n_steps                  !! follows from t_end and dt
-    end type settings
+    public :: read_settings
 
 contains
 
@@ -130,10 +104,6 @@ contains
         call file%get_integer('output', 'fields', run%fields, at_least(0.0_dp), default=0)
         if (run%fields > 0 .and. run%chain%n_blocks == 1) call file%reject('output', 'fields', &
             'needs a chain of two or more blocks')
-        if (netcdf_available .or. run%fields == 0) return
-        if (run%chain%n_blocks > most_in_csv) call file%reject('output', 'fields', &
-            'of more than 1000 blocks needs NetCDF, which this program was built without ' &
-            // '(Debian: libnetcdff-dev)')
     end subroutine read_fields
 
     !> How the block starts.
@@ -266,4 +236,4 @@ contains
         run%order = merge(2, 1, is_second_order(run%props))
     end subroutine read_adaptive
 
-end module run_settings
+end module run_reader

@@ -1,59 +1,18 @@
-!> What a sweep is told to do: the group &sweep, and the settings of every combination of its
+!> Reads what a sweep is told to do: the group &sweep, and the settings of every combination of its
 !> values.
-module sweep_settings
+module sweep_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use namelist_input, only : any_number, fault, lower, namelist_file
-    use run_settings, only : read_settings, settings
+    use run_reader, only : read_settings
+    use sweep_settings, only : sweep_axis, sweep_plan
     implicit none
     private
 
-    public :: read_sweep, sweep_axis, sweep_plan
+    public :: read_sweep
 
     integer, parameter :: most_combinations = 10000
 
-    !> A key of the input, and the values that it takes one after the other.
-    type :: sweep_axis
-        character(len=:), allocatable :: name         !! group%key
-        character(len=:), allocatable :: group, key
-        character(len=:), allocatable :: source       !! the key of &sweep with the values
-        real(dp), allocatable :: values(:)
-    end type sweep_axis
-
-    !> All combinations of the values of one or two keys. The values of the last key change fastest.
-    type :: sweep_plan
-        type(sweep_axis), allocatable :: axes(:)      !! one or two
-        type(settings), allocatable :: runs(:)        !! one a combination
-        character(len=:), allocatable :: input        !! what all combinations have in common
-    contains
-        procedure :: place, point
-    end type sweep_plan
-
 contains
-
-    !> Which value of each key belongs to a combination?
-    pure function place(self, combination) result(places)
-        class(sweep_plan), intent(in) :: self
-        integer, intent(in) :: combination            !! from 1
-        integer :: places(size(self%axes))
-        integer :: rest, i
-
-        rest = combination - 1
-        do i = size(self%axes), 1, -1
-            places(i) = 1 + mod(rest, size(self%axes(i)%values))
-            rest = rest / size(self%axes(i)%values)
-        end do
-    end function place
-
-    !> The values of the keys in a combination.
-    pure function point(self, combination) result(values)
-        class(sweep_plan), intent(in) :: self
-        integer, intent(in) :: combination            !! from 1
-        real(dp) :: values(size(self%axes))
-        integer :: places(size(self%axes)), i
-
-        places = self%place(combination)
-        values = [(self%axes(i)%values(places(i)), i = 1, size(self%axes))]
-    end function point
 
     !> Takes the group &sweep from a file, and the settings of each combination by the rules of any
     !> run; every fault of every combination is left in `file%faults`.
@@ -192,4 +151,4 @@ contains
         plan%input = file%listing()
     end subroutine list_common_input
 
-end module sweep_settings
+end module sweep_reader

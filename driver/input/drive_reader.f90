@@ -1,0 +1,243 @@
+!> The group &drive of the input file: the loading programme, from lists or from a file.
+module drive_reader
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use csv_table, only : read_table, table
+    use loading_programme, only : programme
+    use namelist_input, only : any_number, at_least, above, namelist_file
+    implicit none
+    private
+
+    public :: read_drive
+
+    character(len=*), parameter :: group = 'drive'
+
+contains
+
+    !> Takes the programme from &drive; every fault is left in `file%faults`.
+    subroutine read_drive(file, normal_traction, drive)
+        type(namelist_file), intent(inout) :: file
+        real(dp), intent(in) :: normal_traction   !! where &drive gives none [F/L^2]
+        type(programme), intent(out) :: drive
+        character(len=:), allocatable :: path
+
+        call file%get_text(group, 'file', path)
+        if (file%given(group, 'file')) then
+            call read_drive_file(file, path, normal_traction, drive)
+        else
+            call read_drive_lists(file, normal_traction, drive)
+        end if
+        call read_oscillation(file, drive)
+    end subroutine read_drive
+
+    subroutine read_oscillation(file, drive)
+        type(namelist_file), intent(inout) :: file
+        type(programme), intent(inout) :: drive
+
+        call file%get_real(group, 'normal_amplitude', drive%amplitude, at_least(0.0_dp), &
+            default=0.0_dp)
+        call file%get_real(group, 'normal_phase', drive%phase, any_number(), default=0.0_dp)
+        if (file%given(group, 'normal_amplitude')) then
+            call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp))
+        else
+            call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp), &
+                default=1.0_dp)
+            if (file%given(group, 'normal_frequency')) call file%reject(group, 'normal_frequency', &
+                'needs a normal_amplitude')
+            if (file%given(group, 'normal_phase')) call file%reject(group, 'normal_phase', &
+                'needs a normal_amplitude')
+        end if
+    end subroutine read_oscillation
+
+    ! ---- lists -------------------------------------------------------------------------------
+
+    !> Velocity and normal traction over time. One value stands for all pieces.
+    subroutine read_drive_lists(file, normal_traction, drive)
+        type(namelist_file), intent(inout) :: file
+        real(dp), intent(in) :: normal_traction   !! where &drive gives none [F/L^2]
+        type(programme), intent(out) :: drive
+        real(dp), allocatable :: velocity(:), normal(:), duration(:)
+        character(len=:), allocatable :: change
+        integer :: faults_before, n, i
+
+        faults_before = size(file%faults)
+        call file%require(group, 'velocity')
+        call file%get_reals(group, 'velocity', velocity, any_number())
+        call file%get_reals(group, 'duration', duration, above(0.0_dp))
+        call file%get_reals(group, 'normal', normal, at_least(0.0_dp))
+        call file%get_choice(group, 'normal_change', change, ['step', 'ramp'], default='step')
+        if (size(file%faults) > faults_before .or. size(velocity) == 0) return
+        if (size(normal) == 0) normal = [normal_traction]
+        n = max(size(velocity), size(normal), size(duration))
+        call check_length('velocity', size(velocity))
+        call check_length('normal', size(normal))
+        if (size(duration) /= n .and. n > 1) then
+            call file%reject(group, 'duration', 'must have ' // counted(n) &
+                // ', one for each piece')
+        end if
+        if (size(file%faults) > faults_before) return
+
+        if (size(velocity) < n) velocity = [(velocity(1), i = 1, n)]
+        if (size(normal) < n) normal = [(normal(1), i = 1, n)]
+        drive%listed = n
+        drive%start = [0.0_dp, (sum(duration(:i)), i = 1, n - 1)]
+        drive%velocity = velocity
+        drive%normal = normal
+        drive%normal_rate = 0.0_dp * normal
+        if (change == 'ramp' .and. n > 1) call make_ramps(duration, drive)
+        drive%acceleration = 0.0_dp * drive%velocity
+        call drive%add_up_travel()
+
+    contains
+
+        subroutine check_length(key, length)
+            character(len=*), intent(in) :: key
+            integer, intent(in) :: length
+
+            if (length == n .or. length == 1) return
+            call file%reject(group, key, 'must have one value or ' // counted(n) &
+                // ', as many as the other lists')
+        end subroutine check_length
+
+    end subroutine read_drive_lists
+
+    !> Each piece starts at the normal traction of the one before, and ends at its own; another one
+    !> then holds the last.
+    subroutine make_ramps(duration, drive)
+        real(dp), intent(in) :: duration(:)      !! [T]
+        type(programme), intent(inout) :: drive
+        real(dp) :: target(size(duration))
+        integer :: n
+
+        n = size(duration)
+        target = drive%normal
+        drive%normal(2:) = target(:n - 1)
+        drive%normal_rate = (target - drive%normal) / duration
+        drive%start = [drive%start, drive%start(n) + duration(n)]
+        drive%velocity = [drive%velocity, drive%velocity(n)]
+        drive%normal = [drive%normal, target(n)]
+        drive%normal_rate = [drive%normal_rate, 0.0_dp]
+    end subroutine make_ramps
+
+    ! ---- file --------------------------------------------------------------------------------
+
+    !> Columns time, velocity or displacement, and normal if you like, linear between the rows.
+    subroutine read_drive_file(file, path, normal_traction, drive)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: path      !! as in the input file, relative to it
+        real(dp), intent(in) :: normal_traction   !! where the file gives none [F/L^2]
+        type(programme), intent(out) :: drive
+        character(len=8), parameter :: lists(4) = ['velocity', 'duration', 'normal  ', 'change  ']
+        type(table) :: rows
+        character(len=:), allocatable :: key
+        integer :: i
+
+        do i = 1, size(lists)
+            key = trim(lists(i))
+            if (key == 'change') key = 'normal_change'
+            if (file%given(group, key)) call file%reject(group, key, 'cannot stand beside file')
+        end do
+        if (len(path) == 0) return
+        call read_table(beside(file%name, path), rows)
+        if (size(rows%faults) == 0) call check_columns(rows)
+        if (size(rows%faults) == 0) call check_rows(rows)
+        do i = 1, size(rows%faults)
+            call file%reject(group, 'file', rows%faults(i)%text)
+        end do
+        if (size(rows%faults) == 0) call take_rows(rows, normal_traction, drive)
+    end subroutine read_drive_file
+
+    subroutine check_columns(rows)
+        type(table), intent(inout) :: rows
+        integer :: i
+
+        do i = 1, size(rows%names)
+            if (all(rows%names(i) /= ['time        ', 'velocity    ', 'displacement', &
+                'normal      '])) then
+                call rows%add_fault(1, "column '" // trim(rows%names(i)) // "' is none of time, " &
+                    // 'velocity, displacement, normal')
+            end if
+        end do
+        if (rows%column('time') == 0) call rows%add_fault(1, "column 'time' is missing")
+        if (rows%column('velocity') == 0 .eqv. rows%column('displacement') == 0) then
+            call rows%add_fault(1, "takes one of the columns 'velocity' and 'displacement'")
+        end if
+        if (size(rows%lines) < 2) call rows%add_fault(0, 'has fewer than two rows of numbers')
+    end subroutine check_columns
+
+    subroutine check_rows(rows)
+        type(table), intent(inout) :: rows
+        integer :: i, normal, time
+
+        time = rows%column('time')
+        normal = rows%column('normal')
+        if (abs(rows%values(time, 1)) > 0.0_dp) then
+            call rows%add_fault(rows%lines(1), 'time must start at 0')
+        end if
+        do i = 2, size(rows%lines)
+            if (rows%values(time, i) > rows%values(time, i - 1)) cycle
+            call rows%add_fault(rows%lines(i), 'time must be larger than in the row before')
+        end do
+        if (normal == 0) return
+        do i = 1, size(rows%lines)
+            if (rows%values(normal, i) < 0.0_dp) call rows%add_fault(rows%lines(i), &
+                'normal must be >= 0')
+        end do
+    end subroutine check_rows
+
+    !> After the last row its velocity and its normal traction go on; after a last displacement the
+    !> drive stands still.
+    subroutine take_rows(rows, normal_traction, drive)
+        type(table), intent(in) :: rows
+        real(dp), intent(in) :: normal_traction
+        type(programme), intent(inout) :: drive
+        integer :: n
+
+        n = size(rows%lines)
+        drive%start = rows%values(rows%column('time'), :)
+        if (rows%column('velocity') > 0) then
+            drive%velocity = rows%values(rows%column('velocity'), :)
+            drive%acceleration = rate_of(drive%velocity)
+        else
+            drive%velocity = rate_of(rows%values(rows%column('displacement'), :))
+            drive%acceleration = 0.0_dp * drive%velocity
+        end if
+        if (rows%column('normal') > 0) then
+            drive%normal = rows%values(rows%column('normal'), :)
+        else
+            drive%normal = 0.0_dp * drive%velocity + normal_traction
+        end if
+        drive%normal_rate = rate_of(drive%normal)
+        call drive%add_up_travel()
+
+    contains
+
+        pure function rate_of(values) result(rate)
+            real(dp), intent(in) :: values(:)
+            real(dp) :: rate(size(values))
+
+            rate(:n - 1) = (values(2:) - values(:n - 1)) / (drive%start(2:) - drive%start(:n - 1))
+            rate(n) = 0.0_dp
+        end function rate_of
+
+    end subroutine take_rows
+
+    !> A path as seen from the directory of a file.
+    pure function beside(file, path) result(full)
+        character(len=*), intent(in) :: file, path
+        character(len=:), allocatable :: full
+
+        full = path
+        if (path(1:1) /= '/') full = file(:index(file, '/', back=.true.)) // path
+    end function beside
+
+    pure function counted(n) result(text)
+        integer, intent(in) :: n
+        character(len=:), allocatable :: text
+        character(len=20) :: buffer
+
+        write (buffer, '(i0, a)') n, ' value'
+        text = trim(buffer)
+        if (n /= 1) text = text // 's'
+    end function counted
+
+end module drive_reader

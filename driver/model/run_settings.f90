@@ -1,0 +1,37 @@
+!> What a run is told to do. Defaults are those of the input file (docs/driver.md).
+module run_settings
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_settings, only : chain
+    use loading_programme, only : programme
+    use slider_system, only : initial_values
+    implicit none
+    private
+
+    public :: settings
+
+    type :: settings
+        real(dp), allocatable :: props(:)   !! constants of the friction routine
+        real(dp) :: mass = 0.0_dp           !! 0: quasi-static [F T^2/L]
+        real(dp) :: stiffness = 0.0_dp      !! of the drive spring, > 0 [F/L]
+        real(dp) :: damping = 0.0_dp        !! [F T/L]
+        real(dp) :: area = 1.0_dp           !! apparent contact area [L^2]
+        type(initial_values) :: initial
+        type(programme) :: drive
+        type(chain) :: chain
+        real(dp) :: t_end = 0.0_dp, dt = 0.0_dp   !! end of the run, step or first step, > 0 [T]
+        real(dp) :: checkpoint = 60.0_dp    !! time between two checkpoints, by the clock [s]
+        logical :: adaptive = .false.       !! the error chooses the steps
+        real(dp) :: rtol = 0.0_dp           !! error in a step, part of the static friction force
+        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
+        integer :: order = 1                !! of the method with the friction law in it
+        real(dp) :: beta = 0.25_dp, gamma = 0.5_dp   !! of Newmark's method
+        real(dp) :: rho_infinity = -1.0_dp  !! of the generalised-alpha method; negative: not asked
+        real(dp) :: tolerance = 1.0e-10_dp  !! of the force residual, relative to the largest force
+        integer :: max_iterations = 25      !! of Newton's method in a step
+        integer :: interval = 1             !! steps between two rows of the CSV file
+        real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
+        integer :: fields = 0               !! steps between two rows of a chain's fields; 0: none
+        integer :: n_steps = 0              !! follows from t_end and dt
+    end type settings
+
+end module run_settings
