@@ -53,6 +53,12 @@ int friction_update(int ndir, const double *du, double dtime, int nprops, const 
 int friction_update_batch(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
                           int nstatv, double *statev, double *traction, double *tangent, int *status);
 
+/* The same for arrays that keep each point's numbers together, as C and numpy order them: component j of
+ * point i is du[i*ndir + j], state variable j of point i is statev[i*nstatv + j], and
+ * d(traction i)/d(du j) of point k is tangent[(k*ndir + i)*ndir + j]. */
+int friction_update_points(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
+                           int nstatv, double *statev, double *traction, double *tangent, int *status);
+
 /* The tangential part alone, for hosts that hand in the pressure.
  *   ndir      tangential components: 1 or 2
  *   du        increment of tangential displacement, ndir numbers [L]

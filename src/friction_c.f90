@@ -4,12 +4,13 @@ module friction_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_int64_t, c_loc, c_null_char, c_ptr
     use friction_mod, only : friction_bad_size, friction_null_pointer, friction_ok, &
-        friction_tangential, friction_version, update_arrays, update_arrays_batch
+        friction_tangential, friction_version, update_arrays, update_arrays_batch, &
+        update_arrays_points
     use friction_status, only : first_message, last_message, message_length, message_place, messages
     implicit none
     private
 
-    public :: c_message, c_tangential, c_update, c_update_batch, c_version
+    public :: c_message, c_tangential, c_update, c_update_batch, c_update_points, c_version
 
     ! C is handed the address of a text, so the constants need a place in memory. Nothing ever
     ! writes to them.
@@ -119,11 +120,57 @@ contains
         call c_f_pointer(point_status, point_status_, [n])
         call update_arrays_batch(n, ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, &
             tangent_, point_status_)
-        status = friction_ok
-        if (iany(point_status_) == 0) return
-        status = minval(point_status_)
-        if (status == friction_ok) status = maxval(point_status_)
+        status = worst(point_status_)
     end function c_update_batch
+
+    !> `friction_update_points` of include/friction.h. The function's value is the worst status of
+    !> all points.
+    function c_update_points(n, ndir, du, dtime, nprops, props, nstatv, statev, traction, tangent, &
+        point_status) result(status) bind(C, name='friction_update_points')
+        integer(c_int64_t), value, intent(in) :: n     !! points
+        integer(c_int), value, intent(in) :: ndir      !! components of du: 2 or 3
+        type(c_ptr), value, intent(in) :: du           !! ndir numbers a point [L]
+        real(c_double), value, intent(in) :: dtime     !! [T]
+        integer(c_int), value, intent(in) :: nprops    !! number of material constants
+        type(c_ptr), value, intent(in) :: props        !! nprops numbers
+        integer(c_int), value, intent(in) :: nstatv    !! number of state variables
+        type(c_ptr), value, intent(in) :: statev       !! nstatv numbers a point, in and out
+        type(c_ptr), value, intent(in) :: traction     !! ndir numbers a point, out [F/L^2]
+        type(c_ptr), value, intent(in) :: tangent   !! ndir x ndir numbers a point, row after row,
+                                                    !! out [F/L^3]
+        type(c_ptr), value, intent(in) :: point_status   !! n numbers, out
+        integer(c_int) :: status
+        real(c_double), pointer, contiguous :: du_(:), props_(:), statev_(:), traction_(:), &
+            tangent_(:)
+        integer(c_int), pointer, contiguous :: point_status_(:)
+
+        status = friction_bad_size
+        if (n < 0 .or. min(ndir, nprops, nstatv) < 0) return
+        status = friction_null_pointer
+        if (.not. (c_associated(du) .and. c_associated(props) .and. c_associated(statev) &
+            .and. c_associated(traction) .and. c_associated(tangent) &
+            .and. c_associated(point_status))) return
+        call c_f_pointer(du, du_, [n * ndir])
+        call c_f_pointer(props, props_, [nprops])
+        call c_f_pointer(statev, statev_, [n * nstatv])
+        call c_f_pointer(traction, traction_, [n * ndir])
+        call c_f_pointer(tangent, tangent_, [n * ndir * ndir])
+        call c_f_pointer(point_status, point_status_, [n])
+        call update_arrays_points(n, ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, &
+            tangent_, point_status_)
+        status = worst(point_status_)
+    end function c_update_points
+
+    !> The lowest negative status, else the highest.
+    pure function worst(point_status) result(status)
+        integer(c_int), intent(in) :: point_status(:)
+        integer(c_int) :: status
+
+        status = friction_ok
+        if (iany(point_status) == 0) return
+        status = minval(point_status)
+        if (status == friction_ok) status = maxval(point_status)
+    end function worst
 
     !> `friction_message` of include/friction.h.
     function c_message(status) result(text) bind(C, name='friction_message')

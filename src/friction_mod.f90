@@ -28,8 +28,8 @@ module friction_mod
     private
 
     public :: friction_update, friction_update_frame, friction_tangential, friction_update_batch, &
-        friction_is_orthotropic, friction_message, friction_version
-    public :: update_arrays, update_arrays_batch   ! for the C interface
+        friction_update_points, friction_is_orthotropic, friction_message, friction_version
+    public :: update_arrays, update_arrays_batch, update_arrays_points   ! for the C interface
     public :: friction_bad_axis, friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
         friction_null_pointer, friction_ok, friction_snap_back, friction_zero_time_increment
@@ -109,6 +109,36 @@ module friction_mod
             real(wp), intent(inout), target :: tangent(n, ndir, ndir)
             integer, intent(out) :: status(n)
         end subroutine update_arrays_batch
+
+        !> `friction_update_batch` for arrays that keep each point's numbers together, as C and
+        !> numpy order them: component j of point i is du(j, i).
+        module subroutine friction_update_points(du, dtime, props, statev, traction, tangent, &
+            status)
+            implicit none
+            real(wp), intent(in), contiguous :: du(:, :)   !! increments of relative displacement; 2
+                                                           !! or 3 components, n points [L]
+            real(wp), intent(in) :: dtime                  !! increment of time, >= 0 [T]
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
+            real(wp), intent(inout), contiguous :: statev(:, :)     !! states, start in, end out; 8
+                                                                    !! or more, n points
+            real(wp), intent(inout), contiguous :: traction(:, :)   !! shape of du [F/L^2]
+            real(wp), intent(inout), contiguous :: tangent(:, :, :)   !! dT_i/d(du_j) of point k is
+                                                                      !! tangent(j, i, k) [F/L^3]
+            integer, intent(out), contiguous :: status(:)   !! a named code for each of the n points
+        end subroutine friction_update_points
+
+        !> The same with explicit sizes.
+        module subroutine update_arrays_points(n, ndir, du, dtime, nprops, props, nstatv, statev, &
+            traction, tangent, status)
+            implicit none
+            integer(int64), intent(in) :: n                         !! points
+            integer, intent(in) :: ndir, nprops, nstatv             !! sizes
+            real(wp), intent(in) :: du(ndir, n), dtime, props(nprops)
+            real(wp), intent(inout) :: statev(nstatv, n), traction(ndir, n)
+            real(wp), intent(inout) :: tangent(ndir, ndir, n)       !! tangent(j, i, k)
+            integer, intent(out) :: status(n)
+        end subroutine update_arrays_points
     end interface
 
 contains

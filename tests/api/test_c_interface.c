@@ -1,6 +1,7 @@
 /* The C interface as a C program sees it: same numbers as the law demands, NULL is a code, texts are texts. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "friction.h"
@@ -80,6 +81,35 @@ static void a_batch_is_component_major(void)
           == FRICTION_NULL_POINTER);
 }
 
+static void points_are_in_c_order(void)
+{
+    enum { n = 3, k = 1 };
+    const double press[3] = {-0.01, 0.002, 0.001};
+    double one[8] = {0}, t1[3], c1[9];
+    double du[n][3], statev[n][8] = {{0}}, traction[n][3], tangent[n][3][3];
+    int status[n], i, j;
+
+    for (i = 0; i < n; i++)
+        for (j = 0; j < 3; j++)
+            du[i][j] = press[j] / (1 + abs(i - k));
+    du[0][2] = NAN;
+    CHECK(friction_update_points(n, 3, du[0], 0.1, 9, props, 8, statev[0], traction[0], tangent[0][0], status)
+          == FRICTION_BAD_INCREMENT);
+    CHECK(status[0] == FRICTION_BAD_INCREMENT && status[1] == FRICTION_OK && status[2] == FRICTION_OK);
+    friction_update(3, press, 0.1, 9, props, 8, one, t1, c1);
+    for (j = 0; j < 8; j++)
+        CHECK(fabs(statev[k][j] - one[j]) < 1e-15);
+    for (i = 0; i < 3; i++) {
+        CHECK(fabs(traction[k][i] - t1[i]) < 1e-14);
+        for (j = 0; j < 3; j++)
+            CHECK(fabs(tangent[k][i][j] - c1[j * 3 + i]) < 1e-11);
+    }
+    CHECK(friction_update_points(-1, 3, du[0], 0.1, 9, props, 8, statev[0], traction[0], tangent[0][0], status)
+          == FRICTION_BAD_SIZE);
+    CHECK(friction_update_points(n, 3, du[0], 0.1, 9, props, 8, statev[0], traction[0], NULL, status)
+          == FRICTION_NULL_POINTER);
+}
+
 static void bad_calls_are_codes_and_touch_nothing(void)
 {
     double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
@@ -122,6 +152,7 @@ int main(void)
     update_slides_on_the_subloading_surface();
     tangential_is_the_same_with_the_pressure_handed_in();
     a_batch_is_component_major();
+    points_are_in_c_order();
     bad_calls_are_codes_and_touch_nothing();
     texts_are_constant_c_strings();
     printf("%d failures\n", failures);

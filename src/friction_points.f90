@@ -1,0 +1,141 @@
+!> Many contact points, each point's numbers side by side (public name and arguments: module
+!> friction_mod). Blocks of points are transposed, in cache, around the batch routine.
+submodule(friction_mod:friction_batch) friction_points
+    implicit none
+
+    !> From one component to the next in the transposed block: a power of two would crowd into few
+    !> lines of the cache.
+    integer, parameter :: apart = lanes + line
+
+    !> The block's columns: first ones of each array.
+    integer, parameter :: at_du = 1, at_statev = at_du + 3, at_traction = at_statev + statev_size, &
+        at_tangent = at_traction + 3, columns = at_tangent + 8
+
+contains
+
+    module subroutine friction_update_points(du, dtime, props, statev, traction, tangent, status)
+        real(wp), intent(in), contiguous :: du(:, :), props(:)
+        real(wp), intent(in) :: dtime
+        real(wp), intent(inout), contiguous :: statev(:, :), traction(:, :), tangent(:, :, :)
+        integer, intent(out), contiguous :: status(:)
+        integer(int64) :: n
+        integer :: ndir
+
+        ndir = size(du, 1)
+        n = size(du, 2, int64)
+        status = friction_bad_size
+        if (size(statev, 2, int64) /= n .or. size(traction, 2, int64) /= n &
+            .or. size(tangent, 3, int64) /= n .or. size(status, 1, int64) /= n) return
+        if (size(traction, 1) /= ndir .or. size(tangent, 1) /= ndir &
+            .or. size(tangent, 2) /= ndir) return
+        call update_arrays_points(n, ndir, du, dtime, size(props), props, size(statev, 1), statev, &
+            traction, tangent, status)
+    end subroutine friction_update_points
+
+    module subroutine update_arrays_points(n, ndir, du, dtime, nprops, props, nstatv, statev, &
+        traction, tangent, status)
+        integer(int64), intent(in) :: n
+        integer, intent(in) :: ndir, nprops, nstatv
+        real(wp), intent(in) :: du(ndir, n), dtime, props(nprops)
+        real(wp), intent(inout) :: statev(nstatv, n), traction(ndir, n), tangent(ndir, ndir, n)
+        integer, intent(out) :: status(n)
+        type(batch) :: this   ! of one block
+        integer(int64) :: number, last_block
+
+        if (n == 0) return
+        if (ndir < 2 .or. ndir > 3 .or. nstatv < statev_size) then
+            status = friction_bad_size
+            return
+        end if
+        this = batch(int(apart, int64), ndir, nprops, statev_size, dtime, .false., 0.0_wp)
+        call prepare_kernel(this, props)
+        last_block = (n + lanes - 1) / lanes
+        if (n < few) then   ! to call the threads would take longer
+            do number = 1, last_block
+                call update_block(number)
+            end do
+        else
+            !$omp parallel do schedule(static)
+            do number = 1, last_block
+                call update_block(number)
+            end do
+            !$omp end parallel do
+        end if
+
+    contains
+
+        subroutine update_block(number)
+            integer(int64), intent(in) :: number
+            real(wp), target :: room(apart * columns + line)
+            integer(int64) :: first
+            integer :: count, start
+
+            first = (number - 1) * lanes + 1
+            count = int(min(int(lanes, int64), n - first + 1))
+            start = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
+            call update_transposed(this, count, room(start + 1), du(1, first), props, nstatv, &
+                statev(1, first), traction(1, first), tangent(1, 1, first), status(first))
+        end subroutine update_block
+
+    end subroutine update_arrays_points
+
+    !> One block.
+    subroutine update_transposed(this, count, block, du, props, nstatv, statev, traction, tangent, &
+        status)
+        type(batch), intent(in) :: this
+        integer, intent(in) :: count    !! points of this block, `lanes` at most
+        real(wp), intent(inout) :: block(apart, columns)   !! workspace
+        integer, intent(in) :: nstatv   !! numbers from one point's state to the next's
+        real(wp), intent(in) :: du(this%ndir, count), props(this%nprops)
+        real(wp), intent(inout) :: statev(nstatv, count), traction(this%ndir, count)
+        real(wp), intent(inout) :: tangent(this%ndir, this%ndir, count)
+        integer, intent(inout) :: status(count)
+
+        ! Loops whose lengths the compiler knows take less time.
+        if (this%ndir == 3) then
+            call to_lanes(3, count, nstatv, du, statev, block)
+        else
+            call to_lanes(2, count, nstatv, du, statev, block)
+        end if
+        call update_range(this, 1_int64, int(count, int64), block(1, at_du), props, &
+            block(1, at_statev), block(1, at_traction), block(1, at_tangent), status)
+        if (this%ndir == 3) then
+            call to_points(3, count, nstatv, status, block, statev, traction, tangent)
+        else
+            call to_points(2, count, nstatv, status, block, statev, traction, tangent)
+        end if
+    end subroutine update_transposed
+
+    !> Component after component, from point after point.
+    pure subroutine to_lanes(ndir, count, nstatv, du, statev, block)
+        integer, intent(in) :: ndir, count, nstatv
+        real(wp), intent(in) :: du(ndir, count), statev(nstatv, count)
+        real(wp), intent(inout) :: block(apart, columns)
+        integer :: i
+
+        do i = 1, count
+            block(i, at_du:at_du + ndir - 1) = du(:, i)
+            block(i, at_statev:at_statev + statev_size - 1) = statev(:statev_size, i)
+        end do
+    end subroutine to_lanes
+
+    !> Point after point, from component after component; points that were refused are left out.
+    pure subroutine to_points(ndir, count, nstatv, status, block, statev, traction, tangent)
+        integer, intent(in) :: ndir, count, nstatv
+        integer, intent(in) :: status(count)
+        real(wp), intent(in) :: block(apart, columns)
+        real(wp), intent(inout) :: statev(nstatv, count), traction(ndir, count)
+        real(wp), intent(inout) :: tangent(ndir, ndir, count)
+        integer :: i, row
+
+        do i = 1, count
+            if (status(i) < 0) cycle
+            statev(:statev_size, i) = block(i, at_statev:at_statev + statev_size - 1)
+            traction(:, i) = block(i, at_traction:at_traction + ndir - 1)
+            do row = 1, ndir
+                tangent(:, row, i) = block(i, at_tangent + row - 1:at_tangent + ndir**2 - 1:ndir)
+            end do
+        end do
+    end subroutine to_points
+
+end submodule friction_points
