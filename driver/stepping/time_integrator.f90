@@ -2,7 +2,7 @@
 !> consistent tangent (docs/theory.md, section 7).
 module time_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_no_convergence, friction_ok, friction_snap_back
+    use friction_mod, only : friction_no_convergence, friction_ok
     use chain_solver, only : chain_matrix
     use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
         friction_forces, slider, slider_state
@@ -18,12 +18,23 @@ module time_integrator
         type(chain_matrix) :: matrix
     end type workspace
 
+    !> The balance of forces that a step looks for.
+    type :: balance
+        real(dp) :: dt = 0.0_dp            !! of the step [T]
+        logical :: inertial = .false.
+        real(dp) :: inertia = 0.0_dp       !! of mass and damper, as a stiffness [F/L]
+        real(dp) :: norm = 0.0_dp          !! largest residual [F]
+        real(dp) :: scale = 0.0_dp         !! largest force, by which that is held [F]
+        integer :: friction_status = friction_ok
+    end type balance
+
     type :: newmark
         real(dp) :: beta = 0.25_dp, gamma = 0.5_dp   !! mean acceleration
         real(dp) :: tolerance = 1.0e-10_dp   !! of the residual, relative to the largest force
         integer :: max_iterations = 25
         real(dp) :: alpha_m = 0.0_dp, alpha_f = 0.0_dp   !! parts of the old state in the balance
-        type(workspace) :: work
+        type(workspace), private :: work
+        type(balance), private :: now
     contains
         procedure :: step
     end type newmark
@@ -74,101 +85,183 @@ contains
         type(slider_state), intent(inout) :: new   !! allocated like `old`
         type(step_report), intent(out) :: report
         real(dp), intent(in), optional :: guess(:)   !! of the displacements at the end [L]
-        integer, parameter :: max_halvings = 8, to_and_fro = 10
-        real(dp) :: inertia, norm, norm_old, scale
-        integer :: halving
-        logical :: inertial, solved
+        logical :: balanced
 
         report%iterations = 0
         report%status = friction_no_convergence
         if (dt <= 0.0_dp) return   ! steps so short that time stands still
-        inertial = system%mass > 0.0_dp
-        if (inertial) then
-            inertia = (1.0_dp - self%alpha_m) * system%mass / (self%beta * dt**2) &
+        self%now = balance(dt=dt, inertial=system%mass > 0.0_dp)
+        if (self%now%inertial) then
+            self%now%inertia = (1.0_dp - self%alpha_m) * system%mass / (self%beta * dt**2) &
                 + (1.0_dp - self%alpha_f) * system%damping * self%gamma / (self%beta * dt)
         else
-            inertia = system%damping / (self%gamma * dt)
+            self%now%inertia = system%damping / (self%gamma * dt)
         end if
         new%time = old%time + dt
         new%drive = drive
         new%normal = normal
-
         call make_room(self%work, size(old%x), system)
+        if (present(guess)) then
+            self%work%dx = guess - old%x
+        else
+            self%work%dx = dt * old%v + 0.5_dp * dt**2 * old%a
+        end if
+        call weigh_old_state(self, system, old)
+        call iterate(self, system, old, new, report, balanced)
+        if (.not. balanced .and. size(old%x) == 1) call search(self, system, old, new, report, &
+            balanced)
+        if (report%status < 0) return
+        report%status = friction_no_convergence
+        if (.not. balanced) return
+        report%status = self%now%friction_status
+        report%scale = self%now%scale
+        report%stiffness = system%stiffness + maxval(self%work%tangent) + 4.0_dp * system%coupling
+        if (.not. self%now%inertial) call look_for_another_balance(self, system, old, new, report)
+    end subroutine step
+
+    !> Newton's method, with steps cut where the residual would rise.
+    subroutine iterate(self, system, old, new, report, balanced)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(inout) :: report   !! status: of the friction routine, if negative
+        logical, intent(out) :: balanced
+        integer, parameter :: max_halvings = 8, most_of_one = 12   !! iterations of one block, which
+                                                                   !! a search serves better then
+        real(dp) :: norm_old
+        integer :: halving, most
+        logical :: solved
+
+        most = self%max_iterations
+        if (size(old%x) == 1) most = min(most, most_of_one)
+        balanced = .false.
+        call evaluate(self, system, old, new, report)
         associate (w => self%work)
-            if (present(guess)) then
-                w%dx = guess - old%x
-            else
-                w%dx = dt * old%v + 0.5_dp * dt**2 * old%a
-            end if
-            call weigh_old_state(w%rest_of_old)
-            call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
-            if (report%status < 0) return
-            do
-                report%residual(min(report%iterations, most_shown)) = norm / max(scale, tiny(scale))
-                if (norm <= self%tolerance * scale) exit
-                report%status = friction_no_convergence
-                if (report%iterations == self%max_iterations) return
-                if (report%iterations == to_and_fro .and. size(w%dx) == 1) then
-                    ! between slip one way and slip the other: a stiff contact may well stick
-                    w%dx = 0.0_dp
-                    call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
-                    if (report%status < 0) return
-                end if
-                call fill(w%matrix, w%tangent)
-                if (.not. inertial .and. any(w%matrix%diagonal <= 0.0_dp)) return
+            do while (report%status >= 0)
+                report%residual(min(report%iterations, most_shown)) = self%now%norm &
+                    / max(self%now%scale, tiny(norm_old))
+                balanced = self%now%norm <= self%tolerance * self%now%scale
+                if (balanced .or. report%iterations == most) return
+                call fill(self, system)
+                if (.not. self%now%inertial .and. any(w%matrix%diagonal <= 0.0_dp)) return
                 w%correction = w%residual
                 call w%matrix%solve(w%correction, solved)
                 if (.not. solved) return
-                report%status = friction_ok
                 report%iterations = report%iterations + 1
                 ! too small a correction to change the displacements: as exact as they get
-                if (all(abs(w%correction) <= epsilon(w%dx) * abs(old%x + w%dx))) exit
+                balanced = all(abs(w%correction) <= epsilon(w%dx) * abs(old%x + w%dx))
+                if (balanced) return
 
                 w%dx_old = w%dx
-                norm_old = norm
+                norm_old = self%now%norm
                 do halving = 0, max_halvings
                     w%dx = w%dx_old + w%correction / 2**halving
-                    call evaluate(w%dx, w%rest_of_old, w%tangent, w%residual)
+                    call evaluate(self, system, old, new, report)
                     if (report%status < 0) return
-                    if (norm < norm_old) exit
+                    if (self%now%norm < norm_old) exit
                 end do
             end do
-            report%scale = scale
-            report%stiffness = system%stiffness + maxval(w%tangent) + 4.0_dp * system%coupling
-            if (.not. inertial) call look_for_another_balance(w%dx, w%tangent)
         end associate
+    end subroutine iterate
+
+    !> The balance of one block by a bracket: the first one from no displacement on, in the sense in
+    !> which the forces pull. It cannot be closer than the residual over the largest stiffness there
+    !> is, and there is one, because the drive spring bounds how far friction lets the block go.
+    subroutine search(self, system, old, new, report, balanced)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(inout) :: report
+        logical, intent(out) :: balanced
+        integer, parameter :: most_doublings = 200, most_bisections = 200
+        real(dp) :: ahead, low, high, stride, middle, next
+        integer :: i
+
+        low = 0.0_dp
+        call residual_at(low)
+        if (report%status < 0) return
+        ahead = sign(1.0_dp, self%work%residual(1))
+        stride = ahead * self%now%norm / (self%now%inertia + (1.0_dp - self%alpha_f) &
+            * (system%stiffness + system%area * system%props(3)))
+        do i = 1, most_doublings
+            balanced = self%now%norm <= self%tolerance * self%now%scale
+            if (balanced) return
+            high = low + stride
+            call residual_at(high)
+            if (report%status < 0) return
+            if (ahead * self%work%residual(1) <= 0.0_dp) exit
+            low = high
+            stride = 2.0_dp * stride
+        end do
+        middle = high
+        do i = 1, most_bisections
+            balanced = self%now%norm <= self%tolerance * self%now%scale .or. abs(high - low) &
+                <= 2.0_dp * epsilon(low) * abs(old%x(1) + middle)
+            if (balanced) return
+            if (ahead * self%work%residual(1) > 0.0_dp) then
+                low = middle
+            else
+                high = middle
+            end if
+            call fill(self, system)
+            next = middle + self%work%residual(1) / self%work%matrix%diagonal(1)
+            middle = low + 0.5_dp * (high - low)
+            if (mod(i, 2) == 0 .and. (next - low) * (next - high) < 0.0_dp) middle = next
+            call residual_at(middle)
+            if (report%status < 0) return
+        end do
 
     contains
 
-        !> What the old state adds to the balance of forces.
-        subroutine weigh_old_state(rest)
-            real(dp), intent(inout) :: rest(:)   !! [F]
+        subroutine residual_at(dx)
+            real(dp), intent(in) :: dx   !! increment of displacement [L]
 
-            rest = 0.0_dp
-            if (.not. inertial) return
-            if (.not. (abs(self%alpha_f) > 0.0_dp .or. abs(self%alpha_m) > 0.0_dp)) return
-            rest = self%alpha_f * (old%spring - system%damping * old%v - old%friction) &
-                - self%alpha_m * system%mass * old%a
-            call system%add_coupling(old%x, self%alpha_f, rest)
-        end subroutine weigh_old_state
+            self%work%dx = dx
+            call evaluate(self, system, old, new, report)
+            report%iterations = report%iterations + 1
+        end subroutine residual_at
 
-        !> State and force residual at the end of the step for the displacement increment `dx`.
-        subroutine evaluate(dx, rest_of_old, tangent, residual)
-            real(dp), intent(in), contiguous :: dx(:), rest_of_old(:)
-            real(dp), intent(inout), contiguous :: tangent(:), residual(:)
-            real(dp) :: farthest
-            integer :: i
+    end subroutine search
 
-            call move_to(dx)
-            call friction_forces(system, old%statev, normal, dx, dt, new%statev, new%friction, &
-                tangent, report%status)
+    !> What the old state adds to the balance of forces.
+    subroutine weigh_old_state(self, system, old)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+
+        self%work%rest_of_old = 0.0_dp
+        if (.not. self%now%inertial) return
+        if (.not. (abs(self%alpha_f) > 0.0_dp .or. abs(self%alpha_m) > 0.0_dp)) return
+        self%work%rest_of_old = self%alpha_f * (old%spring - system%damping * old%v &
+            - old%friction) - self%alpha_m * system%mass * old%a
+        call system%add_coupling(old%x, self%alpha_f, self%work%rest_of_old)
+    end subroutine weigh_old_state
+
+    !> State and force residual at the end of the step for the displacement increments in the
+    !> workspace.
+    subroutine evaluate(self, system, old, new, report)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(inout) :: report
+        real(dp) :: farthest, scale, norm
+        integer :: i
+
+        associate (dx => self%work%dx, residual => self%work%residual)
+            call move_to(self, system, old, dx, new)
+            call friction_forces(system, old%statev, new%normal, dx, self%now%dt, new%statev, &
+                new%friction, self%work%tangent, self%now%friction_status)
+            report%status = min(0, self%now%friction_status)
             if (report%status < 0) return
             scale = 0.0_dp
             farthest = 0.0_dp
             do i = 1, size(dx)
                 residual(i) = (1.0_dp - self%alpha_f) * (new%spring(i) - system%damping &
                     * new%v(i) - new%friction(i)) - (1.0_dp - self%alpha_m) * system%mass &
-                    * new%a(i) + rest_of_old(i)
+                    * new%a(i) + self%work%rest_of_old(i)
                 scale = max(scale, abs(new%spring(i)) + abs(system%damping * new%v(i)) &
                     + abs(new%friction(i)) + abs(system%mass * new%a(i)))
                 farthest = max(farthest, abs(new%x(i)))
@@ -181,16 +274,24 @@ contains
             do i = 1, size(dx)
                 norm = max(norm, abs(residual(i)))
             end do
-        end subroutine evaluate
+        end associate
+        self%now%scale = scale
+        self%now%norm = norm
+    end subroutine evaluate
 
-        !> Newmark's formulas, and the drive springs.
-        subroutine move_to(dx)
-            real(dp), intent(in), contiguous :: dx(:)   !! [L]
-            integer :: i
+    !> Newmark's formulas, and the drive springs.
+    subroutine move_to(self, system, old, dx, new)
+        class(newmark), intent(in) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+        real(dp), intent(in), contiguous :: dx(:)   !! [L]
+        type(slider_state), intent(inout) :: new
+        integer :: i
 
+        associate (dt => self%now%dt)
             do i = 1, size(dx)
                 new%x(i) = old%x(i) + dx(i)
-                if (inertial) then
+                if (self%now%inertial) then
                     new%a(i) = (dx(i) - dt * old%v(i)) / (self%beta * dt**2) &
                         - (0.5_dp / self%beta - 1.0_dp) * old%a(i)
                     new%v(i) = old%v(i) + dt * ((1.0_dp - self%gamma) * old%a(i) &
@@ -198,20 +299,22 @@ contains
                 else
                     new%v(i) = (dx(i) / dt - (1.0_dp - self%gamma) * old%v(i)) / self%gamma
                 end if
-                new%spring(i) = system%stiffness * (drive - new%x(i))
+                new%spring(i) = system%stiffness * (new%drive - new%x(i))
             end do
-        end subroutine move_to
+        end associate
+    end subroutine move_to
 
-        !> The derivative of the residual, with the opposite sign.
-        subroutine fill(matrix, tangent)
-            type(chain_matrix), intent(inout) :: matrix
-            real(dp), intent(in) :: tangent(:)   !! of the contacts [F/L]
-            real(dp) :: k
-            integer :: n
+    !> The derivative of the residual, with the opposite sign.
+    subroutine fill(self, system)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        real(dp) :: k
+        integer :: n
 
+        associate (matrix => self%work%matrix, tangent => self%work%tangent)
             k = (1.0_dp - self%alpha_f) * system%coupling
             matrix%beside = -k
-            matrix%diagonal = inertia + 2.0_dp * k + (1.0_dp - self%alpha_f) &
+            matrix%diagonal = self%now%inertia + 2.0_dp * k + (1.0_dp - self%alpha_f) &
                 * (system%stiffness + tangent)
             n = size(tangent)
             if (system%ends == ends_free .or. system%ends == ends_free_fixed) then
@@ -220,29 +323,31 @@ contains
             if (system%ends == ends_free .or. system%ends == ends_fixed_free) then
                 matrix%diagonal(n) = matrix%diagonal(n) - k
             end if
-        end subroutine fill
+        end associate
+    end subroutine fill
 
-        !> The forces must fall all the way from no displacement to the one found: otherwise there
-        !> is another balance before it, and no quasi-static motion leads past that.
-        subroutine look_for_another_balance(dx, tangent)
-            real(dp), intent(in) :: dx(:)            !! [L]
-            real(dp), intent(inout) :: tangent(:)    !! [F/L]
-            integer, parameter :: samples = 8
-            real(dp) :: statev(size(dx), size(old%statev, 2)), force(size(dx))
-            integer :: i, status
+    !> The forces must fall all the way from no displacement to the one found: otherwise there is
+    !> another balance before it, and no quasi-static motion leads past that.
+    subroutine look_for_another_balance(self, system, old, new, report)
+        class(newmark), intent(in) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old, new
+        type(step_report), intent(inout) :: report
+        integer, parameter :: samples = 8
+        real(dp) :: statev(size(old%x), size(old%statev, 2)), force(size(old%x)), &
+            tangent(size(old%x))
+        integer :: i, status
 
-            do i = 1, samples
-                call friction_forces(system, old%statev, normal, dx * i / samples, dt, statev, &
-                    force, tangent, status)
-                if (status < 0) return
-                if (any(inertia + system%stiffness + tangent <= 0.0_dp)) then
-                    report%status = friction_no_convergence
-                    return
-                end if
-            end do
-        end subroutine look_for_another_balance
-
-    end subroutine step
+        do i = 1, samples
+            call friction_forces(system, old%statev, new%normal, self%work%dx * i / samples, &
+                self%now%dt, statev, force, tangent, status)
+            if (status < 0) return
+            if (any(self%now%inertia + system%stiffness + tangent <= 0.0_dp)) then
+                report%status = friction_no_convergence
+                return
+            end if
+        end do
+    end subroutine look_for_another_balance
 
     pure subroutine make_room(work, n, system)
         type(workspace), intent(inout) :: work

@@ -168,6 +168,24 @@ class QuasiStatic(Columns):
             self.assertEqual(self.run_text(namelist(changes), '--no-plot').returncode, status)
 
 
+class Balance(Columns):
+    """One block has a balance of forces in every fixed step, found where Newton's method alone goes astray."""
+    cases = (
+        ("law='rate_and_state', alpha_t=79720000.0, a=0.01, b=0.08873, d_c=4.933e-07, v0=1e-6, f0=0.3",
+         'mu=0.35', 0.015148, 0.007574),
+        ("law='static_kinetic', alpha_t=1e9, mu_s=0.3, mu_k=0.2, d_c=1e4", 'mu=0.29999', 0.002, 1e-4),
+        ("law='subloading', alpha_t=967600000.0, mu_s=0.3, mu_k=0.2, kappa=84850000.0, xi=213.8, m=1921000.0",
+         'r=0.99', 0.0013528, 0.0006764))
+
+    def test_steps_onto_a_stiff_contact_that_weakens_find_their_balance(self):
+        for law, initial, t_end, dt in self.cases:
+            run = self.run_columns(f'&friction {law}, alpha_n=1e8 /\n&slider mass=10, stiffness=4000, normal_traction=98.1 /\n'
+                                   f'&drive velocity=0.01 /\n&initial {initial} /\n&time t_end={t_end}, dt={dt} /\n')
+            self.assertEqual(len(run['time']), round(t_end / dt) + 1)
+            for spring, friction, a in zip(run['spring_force'][1:], run['friction_force'][1:], run['acceleration'][1:]):
+                self.assertLess(abs(spring - friction - 10 * a), 1e-10 * (abs(spring) + abs(friction) + 10 * abs(a)))
+
+
 class AdaptiveSteps(Columns):
     def events_of(self, changes, without=()):
         text = namelist({('time', 't_end'): '12', ('output', 'interval'): '1000', **changes}, without)
