@@ -1,0 +1,39 @@
+"""The package as pip builds it: what it holds, and what is said where it cannot be built."""
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import stickslip
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class Build(unittest.TestCase):
+    def test_the_package_is_the_installed_one_not_the_source(self):
+        self.assertNotIn(ROOT / 'python', pathlib.Path(stickslip.__file__).resolve().parents)
+
+    def test_wheels_are_small(self):
+        for wheel in (ROOT / 'build/wheel').glob('*.whl'):
+            self.assertLess(wheel.stat().st_size, 4e6)
+
+    def test_a_missing_compiler_is_told_with_what_to_install(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tools = pathlib.Path(folder, 'bin')
+            tools.mkdir()
+            for tool in ('ar', 'as', 'cc', 'cmake', 'gcc', 'ld', 'make', 'nm', 'ranlib', 'strip', 'uname'):
+                if shutil.which(tool):
+                    (tools / tool).symlink_to(shutil.which(tool))
+            environment = {name: value for name, value in os.environ.items() if name not in ('FC', 'CONDA_PREFIX')}
+            result = subprocess.run([shutil.which('cmake'), '-S', ROOT, '-B', pathlib.Path(folder, 'build')], text=True,
+                                    capture_output=True, check=False, env={**environment, 'PATH': str(tools)})
+            self.assertNotEqual(result.returncode, 0)
+            words = ' '.join(result.stderr.split())
+            self.assertIn('no Fortran compiler was found', words)
+            self.assertIn('apt install gfortran', words)
+
+
+if __name__ == '__main__':
+    unittest.main()

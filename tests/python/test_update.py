@@ -1,0 +1,174 @@
+"""stickslip.update and stickslip.laws, from the installed package."""
+import dataclasses
+import pathlib
+import re
+import threading
+import unittest
+
+import numpy as np
+
+import stickslip
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LAWS = {
+    'subloading': stickslip.laws.Subloading(alpha_n=1000, alpha_t=800, mu_s=0.45, mu_k=0.25, kappa=8, xi=0.2, m=60),
+    'coulomb': stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3),
+    'static_kinetic': stickslip.laws.StaticKinetic(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=2),
+    'rate_and_state': stickslip.laws.RateAndState(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6),
+    'slip_weakening': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01),
+}
+
+
+def motions(n, ndir, seed=1):
+    """Increments that press the points on the base and shear them, some of them into sliding."""
+    draw = np.random.default_rng(seed)
+    return np.column_stack([np.full(n, -0.01), draw.normal(scale=3e-3, size=(n, ndir - 1))])
+
+
+class Update(unittest.TestCase):
+    def test_first_lines_of_a_newcomer(self):
+        result = stickslip.update([-0.01, 0.001], 0.1, LAWS['coulomb'])
+        np.testing.assert_allclose(result.traction, [-10, 0.8], rtol=1e-14)    # sticks: alpha_n u_n, alpha_t u_t
+        np.testing.assert_allclose(result.tangent, [[1000, 0], [0, 800]], rtol=1e-14)
+        self.assertEqual(result.status, 0)
+        result = stickslip.update([0, 0.1], 0.1, LAWS['coulomb'], result.state)
+        np.testing.assert_allclose(result.traction, [-10, 3], rtol=1e-14)      # slides: mu p
+        np.testing.assert_allclose(result.tangent, [[1000, 0], [-300, 0]], rtol=1e-14, atol=1e-9)
+
+    def test_every_layout_gives_the_same(self):
+        for name, law in LAWS.items():
+            for ndir in (2, 3):
+                du = motions(140, ndir)
+                results = {}
+                start = stickslip.update(motions(140, ndir, 2), 0.1, law).state
+                for order in 'CF':
+                    results[order] = stickslip.update(np.array(du, order=order), 0.1, law, start)
+                every_other = np.repeat(du, 2, axis=0)[::2]
+                results['strided'] = stickslip.update(every_other, 0.1, law, start)
+                results['list'] = stickslip.update(du.tolist(), 0.1, law, start.tolist())
+                for kind, result in results.items():
+                    for i in range(len(du)):
+                        one = stickslip.update(du[i], 0.1, law, start[i])
+                        for a, b in zip(one, result):
+                            np.testing.assert_allclose(a, b[i], rtol=1e-12, atol=1e-12 * np.abs(a).max(),
+                                                       err_msg=f'{name} {kind} {ndir}')
+                    self.assertEqual(result.traction.flags.f_contiguous, kind == 'F')
+
+    def test_the_tangent_is_the_derivative_of_the_traction(self):
+        """Within the error of central differences, for the roots sought here 1e-6 of the stiffness."""
+        step = 1e-8
+        for name, law in LAWS.items():
+            du = motions(50, 3)
+            result = stickslip.update(du, 0.1, law)
+            for j in range(3):
+                ahead, behind = du.copy(), du.copy()
+                ahead[:, j] += step
+                behind[:, j] -= step
+                slope = (stickslip.update(ahead, 0.1, law).traction - stickslip.update(behind, 0.1, law).traction) / (2 * step)
+                self.assertLess(abs(slope - result.tangent[:, :, j]).max(), 1e-3, name)
+
+    def test_the_state_given_is_left_alone_unless_it_is_asked_for(self):
+        law, du = LAWS['subloading'], motions(10, 3)
+        start = stickslip.update(du, 0.1, law).state
+        kept = start.copy()
+        after = stickslip.update(du, 0.1, law, start)
+        np.testing.assert_array_equal(start, kept)
+        self.assertFalse(np.array_equal(after.state, kept))
+        place = stickslip.Result(np.empty((10, 3)), np.empty((10, 3, 3)), start, np.empty(10, np.int32))
+        again = stickslip.update(du, 0.1, law, start, out=place)
+        self.assertIs(again.state, start)
+        np.testing.assert_array_equal(start, after.state)
+        one = stickslip.update(du[0], 0.1, law)
+        other = stickslip.update(du[0], 0.1, law, one.state, out=one)
+        self.assertIs(other.state, one.state)
+
+    def test_a_bad_point_is_told_and_harms_no_other(self):
+        law = LAWS['subloading']
+        for order in 'CF':
+            du = np.array(motions(5, 3), order=order)
+            good = stickslip.update(du, 0.1, law)
+            du[3, 1] = np.nan
+            bad = stickslip.update(du, 0.1, law)
+            self.assertEqual(bad.status.tolist(), [0, 0, 0, -4, 0])
+            self.assertTrue(np.isnan(bad.traction[3]).all() and np.isnan(bad.tangent[3]).all())
+            self.assertEqual(bad.state[3].tolist(), 8 * [0.0])
+            np.testing.assert_array_equal(np.delete(bad.tangent, 3, 0), np.delete(good.tangent, 3, 0))
+        one = stickslip.update([np.nan, 0.0], 0.1, law)
+        self.assertEqual(one.status, -4)
+        self.assertTrue(np.isnan(one.traction).all())
+        self.assertIn('not finite', stickslip.message(one.status))
+
+    def test_no_points_are_no_fault(self):
+        self.assertEqual(stickslip.update(np.empty((0, 3)), 0.1, LAWS['coulomb']).traction.shape, (0, 3))
+
+    def test_wrong_shapes_are_told(self):
+        law = LAWS['coulomb']
+        for du, state in (([1.0], None), ([[1.0] * 4], None), (np.zeros((2, 2, 2)), None), ([0.0, 0.0], np.zeros(7)),
+                          (np.zeros((4, 3)), np.zeros((3, 8))), (np.zeros((4, 3)), np.zeros((4, 9)))):
+            with self.assertRaises(ValueError):
+                stickslip.update(du, 0.1, law, state)
+        other = stickslip.update(np.zeros((4, 3)), 0.1, law)
+        with self.assertRaisesRegex(ValueError, 'out.traction'):
+            stickslip.update(np.zeros((5, 3)), 0.1, law, out=other)
+        with self.assertRaises(TypeError):
+            stickslip.update([0.0, 0.0], 'long', law)
+
+    def test_threads_do_not_meet(self):
+        law, du = LAWS['subloading'], motions(5000, 3)
+        right = stickslip.update(du, 0.1, law)
+        results = [None] * 4
+        def work(k):
+            results[k] = stickslip.update(du, 0.1, law)
+        threads = [threading.Thread(target=work, args=(k,)) for k in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for result in results:
+            np.testing.assert_array_equal(result.tangent, right.tangent)
+
+
+class Laws(unittest.TestCase):
+    def test_constants_stand_where_docs_laws_has_them(self):
+        text = (ROOT / 'docs/laws.md').read_text()
+        for name, law in LAWS.items():
+            self.assertIn(f"| {law.number} | `'{name}'` |", text)
+        section = text[text.index('## 4 Rate and state'):text.index('## 5 Linear')]
+        places = dict(re.findall(r'^\| (\d+)(?:, optional)? \| `(\w+)`', section, re.MULTILINE))
+        law = LAWS['rate_and_state']
+        for place, name in places.items():
+            self.assertEqual(law._own[int(place) - 4], name)
+
+    def test_bad_constants_are_refused_in_the_library_s_words(self):
+        make = stickslip.laws.Subloading
+        good = {'alpha_n': 1, 'alpha_t': 1, 'mu_s': 0.4, 'mu_k': 0.2, 'kappa': 1, 'xi': 1, 'm': 1}
+        make(**good)
+        for bad in ({'mu_k': 0.5}, {'alpha_n': 0}, {'m': -1}, {'xi': float('nan')}, {'mu_0': 0.1}, {'tau_max': -1},
+                    {'scheme': 'exact_rate', 'u_of_r': 'cotangent'}):
+            with self.assertRaisesRegex(ValueError, 'Subloading'):
+                make(**{**good, **bad})
+        with self.assertRaisesRegex(ValueError, 'backward_euler, exact_rate'):
+            make(**good, scheme='exact')
+        for bad in ('0.4', None, [1], True):
+            with self.assertRaises(TypeError):
+                make(**{**good, 'mu_s': bad})
+
+    def test_laws_are_values(self):
+        law = LAWS['subloading']
+        self.assertEqual(law, dataclasses.replace(law))
+        self.assertNotEqual(law, dataclasses.replace(law, m=61))
+        with self.assertRaises(dataclasses.FrozenInstanceError):
+            law.m = 3
+        with self.assertRaises(ValueError):
+            law.props[3] = 3
+        self.assertEqual(hash(law), hash(dataclasses.replace(law)))
+
+    def test_options_reach_the_library(self):
+        capped = stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3, tau_max=1.5)
+        np.testing.assert_allclose(stickslip.update([-0.01, 0.1], 0.1, capped).traction, [-10, 1.5], rtol=1e-14)
+        wide = stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3, mu_ratio=2, direction='radial')
+        np.testing.assert_allclose(stickslip.update([-0.01, 0, 0.1], 0.1, wide).traction, [-10, 0, 6], rtol=1e-14)
+
+
+if __name__ == '__main__':
+    unittest.main()
