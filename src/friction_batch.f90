@@ -6,6 +6,7 @@
 !> on the number of threads.
 submodule(friction_mod) friction_batch
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_intptr_t, c_loc
+    use friction_law_choice, only : prop_law, prop_scheme, prop_tau_max
     implicit none
 
     integer, parameter :: lanes = 128         !! points of the kernel's block
@@ -13,10 +14,7 @@ submodule(friction_mod) friction_batch
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
 
     !> What a call is about.
-    type :: batch
-        integer(int64) :: n                  !! points
-        integer :: ndir                      !! components of du: 2 or 3
-        integer :: nprops, nstatv            !! sizes
+    type, extends(array_sizes) :: batch
         real(wp) :: dtime                    !! [T]
         logical :: vectors                   !! the kernel knows this law and these constants
         real(wp) :: constants(8)             !! for the kernel
@@ -55,33 +53,33 @@ contains
             .or. size(tangent, 1, int64) /= n .or. size(status, 1, int64) /= n) return
         if (size(traction, 2) /= ndir .or. size(tangent, 2) /= ndir &
             .or. size(tangent, 3) /= ndir) return
-        call update_arrays_batch(n, ndir, du, dtime, size(props), props, size(statev, 2), statev, &
-            traction, tangent, status)
+        call update_arrays_batch(array_sizes(n, ndir, size(props), size(statev, 2)), du, dtime, &
+            props, statev, traction, tangent, status)
     end subroutine friction_update_batch
 
-    module subroutine update_arrays_batch(n, ndir, du, dtime, nprops, props, nstatv, statev, &
-        traction, tangent, status)
-        integer(int64), intent(in) :: n
-        integer, intent(in) :: ndir, nprops, nstatv
-        real(wp), intent(in) :: du(n, ndir), dtime, props(nprops)
-        real(wp), intent(inout) :: statev(n, nstatv), traction(n, ndir)
-        real(wp), intent(inout), target :: tangent(n, ndir, ndir)
-        integer, intent(out) :: status(n)
+    module subroutine update_arrays_batch(sizes, du, dtime, props, statev, traction, tangent, &
+        status)
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: du(sizes%points, sizes%ndir), dtime, props(sizes%nprops)
+        real(wp), intent(inout) :: statev(sizes%points, sizes%nstatv)
+        real(wp), intent(inout) :: traction(sizes%points, sizes%ndir)
+        real(wp), intent(inout), target :: tangent(sizes%points, sizes%ndir, sizes%ndir)
+        integer, intent(out) :: status(sizes%points)
         type(batch) :: this
         integer(int64) :: head, block, last_block
 
-        if (n == 0) return
-        if (ndir < 2 .or. ndir > 3) then
+        if (sizes%points == 0) return
+        if (sizes%ndir < 2 .or. sizes%ndir > 3) then
             status = friction_bad_size
             return
         end if
-        this = batch(n, ndir, nprops, nstatv, dtime, .false., 0.0_wp)
+        this = batch(array_sizes=sizes, dtime=dtime, vectors=.false., constants=0.0_wp)
         call prepare_kernel(this, props)
 
         ! Blocks begin where a cache line begins, but for the first.
         head = modulo(-transfer(c_loc(tangent), 0_c_intptr_t) / 8, int(line, c_intptr_t))
-        last_block = (n - head + lanes - 1) / lanes
-        if (n < few) then   ! to call the threads would take longer
+        last_block = (sizes%points - head + lanes - 1) / lanes
+        if (sizes%points < few) then   ! to call the threads would take longer
             do block = 0, last_block
                 call update_block(block)
             end do
@@ -100,8 +98,8 @@ contains
             integer(int64) :: first
 
             first = head + (block - 1) * lanes + 1
-            call update_range(this, max(1_int64, first), min(n, first + lanes - 1), du, props, &
-                statev, traction, tangent, status)
+            call update_range(this, max(1_int64, first), min(sizes%points, first + lanes - 1), &
+                du, props, statev, traction, tangent, status)
         end subroutine update_block
 
     end subroutine update_arrays_batch
@@ -117,8 +115,8 @@ contains
 
         if (this%nstatv < statev_size .or. this%nprops < 8) return
         statev = 0.0_wp
-        call update_arrays(3, [0.0_wp, 0.0_wp, 0.0_wp], this%dtime, this%nprops, props, &
-            statev_size, statev, traction, tangent, status)
+        call update_arrays(array_sizes(1, 3, this%nprops, statev_size), &
+            [0.0_wp, 0.0_wp, 0.0_wp], this%dtime, props, statev, traction, tangent, status)
         if (status < 0) return   ! point by point, they all say so
         if (abs(props(prop_law) - law_subloading) > 0.0_wp) return
         last_option = min(this%nprops, prop_tau_max(law_subloading))
@@ -135,10 +133,11 @@ contains
     subroutine update_range(this, first, last, du, props, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
-        real(wp), intent(in) :: du(this%n, this%ndir), props(this%nprops)
-        real(wp), intent(inout) :: statev(this%n, this%nstatv), traction(this%n, this%ndir)
-        real(wp), intent(inout) :: tangent(this%n, this%ndir, this%ndir)
-        integer, intent(inout) :: status(this%n)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
+        real(wp), intent(inout) :: statev(this%points, this%nstatv)
+        real(wp), intent(inout) :: traction(this%points, this%ndir)
+        real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
+        integer, intent(inout) :: status(this%points)
         integer(c_int) :: left(lanes), n_left
         integer(int64) :: i
 
@@ -147,8 +146,8 @@ contains
                 call update_point_of(this, i, du, props, statev, traction, tangent, status(i))
             end do
         else if (this%ndir == 3 .and. last - first == lanes - 1) then
-            call batch_kernel(this%n, du(first, 1), this%dtime, this%constants, statev(first, 1), &
-                traction(first, 1), tangent(first, 1, 1), left, n_left)
+            call batch_kernel(this%points, du(first, 1), this%dtime, this%constants, &
+                statev(first, 1), traction(first, 1), tangent(first, 1, 1), left, n_left)
             if (n_left == 0) then
                 status(first:last) = friction_ok
             else
@@ -167,11 +166,12 @@ contains
     subroutine update_copies(this, first, last, du, props, left, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
-        real(wp), intent(in) :: du(this%n, this%ndir), props(this%nprops)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
         integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
-        real(wp), intent(inout) :: statev(this%n, this%nstatv), traction(this%n, this%ndir)
-        real(wp), intent(inout) :: tangent(this%n, this%ndir, this%ndir)
-        integer, intent(inout) :: status(this%n)
+        real(wp), intent(inout) :: statev(this%points, this%nstatv)
+        real(wp), intent(inout) :: traction(this%points, this%ndir)
+        real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
+        integer, intent(inout) :: status(this%points)
         real(wp) :: du_(lanes, 3), statev_(lanes, statev_size), traction_(lanes, 3), &
             tangent_(lanes, 3, 3)
         integer(c_int) :: more(lanes), n_left
@@ -186,7 +186,7 @@ contains
         ! In a plane the routine for one point neither uses nor keeps this component, but checks it.
         if (this%ndir == 2) then
             do j = 1, lanes
-                if (transfer(statev_(j, statev_u_et + 1), this%n) /= 0) left(j) = 1
+                if (transfer(statev_(j, statev_u_et + 1), this%points) /= 0) left(j) = 1
             end do
         end if
         do
@@ -236,17 +236,18 @@ contains
     pure subroutine update_point_of(this, i, du, props, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: i
-        real(wp), intent(in) :: du(this%n, this%ndir), props(this%nprops)
-        real(wp), intent(inout) :: statev(this%n, this%nstatv), traction(this%n, this%ndir)
-        real(wp), intent(inout) :: tangent(this%n, this%ndir, this%ndir)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
+        real(wp), intent(inout) :: statev(this%points, this%nstatv)
+        real(wp), intent(inout) :: traction(this%points, this%ndir)
+        real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(out) :: status
         real(wp) :: statev_(statev_size), traction_(this%ndir), tangent_(this%ndir, this%ndir)
 
         status = friction_bad_size
         if (this%nstatv < statev_size) return
         statev_ = statev(i, :statev_size)
-        call update_arrays(this%ndir, du(i, :), this%dtime, this%nprops, props, statev_size, &
-            statev_, traction_, tangent_, status)
+        call update_arrays(array_sizes(1, this%ndir, this%nprops, statev_size), du(i, :), &
+            this%dtime, props, statev_, traction_, tangent_, status)
         if (status < 0) return
         statev(i, :statev_size) = statev_
         traction(i, :) = traction_

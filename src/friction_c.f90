@@ -3,7 +3,7 @@
 module friction_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_int64_t, c_loc, c_null_char, c_ptr
-    use friction_mod, only : friction_bad_size, friction_null_pointer, friction_ok, &
+    use friction_mod, only : array_sizes, friction_bad_size, friction_null_pointer, friction_ok, &
         friction_tangential, friction_version, update_arrays, update_arrays_batch, &
         update_arrays_points
     use friction_status, only : first_message, last_message, message_length, message_place, messages
@@ -47,8 +47,8 @@ contains
         call c_f_pointer(statev, statev_, [nstatv])
         call c_f_pointer(traction, traction_, [ndir])
         call c_f_pointer(tangent, tangent_, [ndir, ndir])
-        call update_arrays(ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, tangent_, &
-            status)
+        call update_arrays(array_sizes(1, ndir, nprops, nstatv), du_, dtime, props_, statev_, &
+            traction_, tangent_, status)
     end function c_update
 
     !> `friction_tangential` of include/friction.h.
@@ -118,8 +118,8 @@ contains
         call c_f_pointer(traction, traction_, [n * ndir])
         call c_f_pointer(tangent, tangent_, [n * ndir * ndir])
         call c_f_pointer(point_status, point_status_, [n])
-        call update_arrays_batch(n, ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, &
-            tangent_, point_status_)
+        call update_arrays_batch(array_sizes(n, ndir, nprops, nstatv), du_, dtime, props_, &
+            statev_, traction_, tangent_, point_status_)
         status = worst(point_status_)
     end function c_update_batch
 
@@ -156,8 +156,8 @@ contains
         call c_f_pointer(traction, traction_, [n * ndir])
         call c_f_pointer(tangent, tangent_, [n * ndir * ndir])
         call c_f_pointer(point_status, point_status_, [n])
-        call update_arrays_points(n, ndir, du_, dtime, nprops, props_, nstatv, statev_, traction_, &
-            tangent_, point_status_)
+        call update_arrays_points(array_sizes(n, ndir, nprops, nstatv), du_, dtime, props_, &
+            statev_, traction_, tangent_, point_status_)
         status = worst(point_status_)
     end function c_update_points
 

@@ -28,29 +28,31 @@ contains
             .or. size(tangent, 3, int64) /= n .or. size(status, 1, int64) /= n) return
         if (size(traction, 1) /= ndir .or. size(tangent, 1) /= ndir &
             .or. size(tangent, 2) /= ndir) return
-        call update_arrays_points(n, ndir, du, dtime, size(props), props, size(statev, 1), statev, &
-            traction, tangent, status)
+        call update_arrays_points(array_sizes(n, ndir, size(props), size(statev, 1)), du, dtime, &
+            props, statev, traction, tangent, status)
     end subroutine friction_update_points
 
-    module subroutine update_arrays_points(n, ndir, du, dtime, nprops, props, nstatv, statev, &
-        traction, tangent, status)
-        integer(int64), intent(in) :: n
-        integer, intent(in) :: ndir, nprops, nstatv
-        real(wp), intent(in) :: du(ndir, n), dtime, props(nprops)
-        real(wp), intent(inout) :: statev(nstatv, n), traction(ndir, n), tangent(ndir, ndir, n)
-        integer, intent(out) :: status(n)
+    module subroutine update_arrays_points(sizes, du, dtime, props, statev, traction, tangent, &
+        status)
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: du(sizes%ndir, sizes%points), dtime, props(sizes%nprops)
+        real(wp), intent(inout) :: statev(sizes%nstatv, sizes%points)
+        real(wp), intent(inout) :: traction(sizes%ndir, sizes%points)
+        real(wp), intent(inout) :: tangent(sizes%ndir, sizes%ndir, sizes%points)
+        integer, intent(out) :: status(sizes%points)
         type(batch) :: this   ! of one block
         integer(int64) :: number, last_block
 
-        if (n == 0) return
-        if (ndir < 2 .or. ndir > 3 .or. nstatv < statev_size) then
+        if (sizes%points == 0) return
+        if (sizes%ndir < 2 .or. sizes%ndir > 3 .or. sizes%nstatv < statev_size) then
             status = friction_bad_size
             return
         end if
-        this = batch(int(apart, int64), ndir, nprops, statev_size, dtime, .false., 0.0_wp)
+        this = batch(int(apart, int64), sizes%ndir, sizes%nprops, statev_size, dtime, .false., &
+            0.0_wp)
         call prepare_kernel(this, props)
-        last_block = (n + lanes - 1) / lanes
-        if (n < few) then   ! to call the threads would take longer
+        last_block = (sizes%points + lanes - 1) / lanes
+        if (sizes%points < few) then   ! to call the threads would take longer
             do number = 1, last_block
                 call update_block(number)
             end do
@@ -71,10 +73,11 @@ contains
             integer :: count, start
 
             first = (number - 1) * lanes + 1
-            count = int(min(int(lanes, int64), n - first + 1))
+            count = int(min(int(lanes, int64), sizes%points - first + 1))
             start = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
-            call update_transposed(this, count, room(start + 1), du(1, first), props, nstatv, &
-                statev(1, first), traction(1, first), tangent(1, 1, first), status(first))
+            call update_transposed(this, count, room(start + 1), du(1, first), props, &
+                sizes%nstatv, statev(1, first), traction(1, first), tangent(1, 1, first), &
+                status(first))
         end subroutine update_block
 
     end subroutine update_arrays_points

@@ -19,7 +19,8 @@ OVERSIZE = """    pure function oversize(x) result(bits)
 
 
 def in_quadruple_precision(text: str) -> str:
-    text = re.sub(r'\b(module|use) friction_', r'\1 quad_friction_', text)
+    text = re.sub(r'\b((?:sub)?module|use|submodule\(friction_mod\)) friction_', r'\1 quad_friction_', text)
+    text = text.replace('submodule(friction_mod)', 'submodule(quad_friction_mod)')
     text = text.replace('real64', 'real128')
     # The exponent stands elsewhere in a longer number.
     text = re.sub(r' *pure function oversize\(.*?end function oversize', OVERSIZE, text, flags=re.DOTALL)

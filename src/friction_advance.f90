@@ -1,0 +1,272 @@
+!> One contact point through one increment: validates, chooses the law, updates, and writes the
+!> state back (public names and arguments: module friction_mod).
+!>
+!> What every update passes through is in this file, so that a compiler can inline it.
+submodule(friction_mod) friction_advance
+    use friction_anisotropy, only : orthotropy
+    use friction_axes, only : contact_axes, is_unit_vector, turn_axes
+    use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
+        point_open, point_slip, point_stick, point_virgin
+    use friction_law, only : law
+    use friction_law_choice, only : choose_law, first_own_prop, law_storage, orthotropy_place, &
+        prop_alpha_n, prop_alpha_t, prop_law, whole_number
+    implicit none
+
+contains
+
+    module procedure friction_update
+        integer :: n
+
+        n = size(du)
+        status = friction_bad_size
+        if (size(traction) /= n .or. size(tangent, 1) /= n .or. size(tangent, 2) /= n) return
+        call update_arrays(array_sizes(1, n, size(props), size(statev)), du, dtime, props, statev, &
+            traction, tangent, status)
+    end procedure friction_update
+
+    module procedure update_arrays
+        type(contact_motion) :: motion
+        real(wp) :: plane_traction(3), plane_tangent(3, 3)
+
+        status = friction_bad_size
+        if (sizes%ndir < 2 .or. sizes%ndir > 3) return
+        motion%du(1) = du(1)
+        motion%du(2) = du(2)
+        motion%dt = dtime
+        motion%pressure_given = .false.
+        motion%pressure = 0.0_wp
+        if (sizes%ndir == 3) then
+            motion%du(3) = du(3)
+            call advance(motion, sizes, props, statev, traction, tangent, status)
+        else
+            motion%du(3) = 0.0_wp
+            call advance(motion, sizes, props, statev, plane_traction, plane_tangent, status)
+            if (status < 0) return
+            traction = plane_traction(1:2)
+            tangent = plane_tangent(1:2, 1:2)
+        end if
+    end procedure update_arrays
+
+    module procedure friction_update_frame
+        real(wp) :: axes(3, 3), state(statev_size), contact_traction(3), contact_tangent(3, 3)
+        type(contact_motion) :: motion
+        integer :: n
+
+        n = size(du)
+        status = friction_bad_size
+        if (n < 2 .or. n > 3 .or. size(normal) /= n .or. size(traction) /= n &
+            .or. size(tangent, 1) /= n .or. size(tangent, 2) /= n &
+            .or. size(statev) < statev_size) return
+        status = friction_bad_normal
+        if (.not. all_usable(n, normal)) return
+        if (.not. is_unit_vector(normal)) return
+        status = friction_bad_increment
+        if (.not. all_usable(n, du)) return
+        status = friction_bad_state
+        if (.not. all_usable(statev_size, statev)) return
+
+        axes = contact_axes(normal)
+        if (n == 3 .and. friction_is_orthotropic(props)) then
+            call turn_to(axis, axes, status)
+            if (status < 0) return
+        end if
+        associate (basis => axes(1:n, 1:n), u => state(statev_u_n:statev_u_n + n - 1))
+            motion%du(3) = 0.0_wp
+            motion%du(1:n) = matmul(du, basis)
+            motion%dt = dtime
+            motion%pressure_given = .false.
+            motion%pressure = 0.0_wp
+            state = statev(1:statev_size)
+            u = matmul(u, basis)
+            call advance(motion, array_sizes(1, n, size(props), statev_size), props, state, &
+                contact_traction, contact_tangent, status)
+            if (status < 0) return
+            u = matmul(basis, u)
+            statev(1:statev_size) = state
+            traction = matmul(basis, contact_traction(1:n))
+            tangent = matmul(basis, matmul(contact_tangent(1:n, 1:n), transpose(basis)))
+        end associate
+    end procedure friction_update_frame
+
+    !> Turns the axes to the one that a caller may have given.
+    pure subroutine turn_to(axis, axes, status)
+        real(wp), intent(in), optional :: axis(:)
+        real(wp), intent(inout) :: axes(3, 3)   !! as columns, the first is the normal
+        integer, intent(out) :: status          !! ok, bad size, or bad axis
+
+        status = friction_bad_axis
+        if (.not. present(axis)) return
+        status = friction_bad_size
+        if (size(axis) /= 3) return
+        status = friction_bad_axis
+        if (all_usable(3, axis)) call turn_axes(axis, axes, status)
+    end subroutine turn_to
+
+    module procedure friction_is_orthotropic
+        integer :: place
+        real(wp) :: ratio
+
+        orthotropic = .false.
+        if (size(props) < first_own_prop) return
+        if (.not. all_usable(size(props), props)) return
+        place = orthotropy_place(whole_number(props(prop_law)))
+        if (size(props) < place) return
+        ratio = props(place)
+        orthotropic = ratio > 0.0_wp .and. abs(ratio - 1.0_wp) > 0.0_wp
+    end procedure friction_is_orthotropic
+
+    module procedure friction_tangential
+        type(contact_motion) :: motion
+        real(wp) :: contact_traction(3), contact_tangent(3, 3)
+        integer :: n
+
+        n = size(du)
+        status = friction_bad_size
+        if (n < 1 .or. n > 2 .or. size(tau) /= n .or. size(dtau_ddu, 1) /= n &
+            .or. size(dtau_ddu, 2) /= n .or. size(dtau_dp) /= n) return
+        motion%du = 0.0_wp
+        motion%du(2:n + 1) = du
+        motion%dt = dtime
+        motion%pressure_given = .true.
+        motion%pressure = pressure
+        call advance(motion, array_sizes(1, n + 1, size(props), size(statev)), props, statev, &
+            contact_traction, contact_tangent, status)
+        if (status < 0) return
+        tau = contact_traction(2:n + 1)
+        dtau_ddu = contact_tangent(2:n + 1, 2:n + 1)
+        dtau_dp = contact_tangent(2:n + 1, 1)
+    end procedure friction_tangential
+
+    !> Validates the numbers, chooses the law, and updates.
+    pure subroutine advance(motion, sizes, props, statev, traction, tangent, status)
+        type(contact_motion), intent(in) :: motion
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: props(sizes%nprops)
+        real(wp), intent(inout) :: statev(sizes%nstatv)
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)
+        integer, intent(out) :: status
+        type(law_storage), target :: storage
+        class(law), pointer :: chosen, surface
+        type(orthotropy) :: plane
+        type(contact_point) :: old, new
+        integer(int64) :: seen
+
+        status = friction_bad_size
+        if (sizes%nprops < first_own_prop .or. sizes%nstatv < statev_size) return
+        status = friction_bad_increment
+        ! One by one: the caller has only just stored them one by one, and a processor that loads
+        ! them in pairs has to wait.
+        seen = ior(ior(ior(oversize(motion%du(1)), oversize(motion%du(2))), &
+            ior(oversize(motion%du(3)), oversize(motion%dt))), oversize(motion%pressure))
+        if (btest(seen, 62)) return
+        if (motion%dt < 0.0_wp) return
+        status = friction_bad_property
+        if (.not. all_usable(sizes%nprops, props)) return
+        if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
+        call choose_law(sizes%nprops, props, storage, chosen, plane, status)
+        if (status < 0) return
+        surface => chosen   ! part by part: a copy of the whole would wait as above
+        call unpack_state(surface, sizes%ndir, statev, old, status)
+        if (status < 0) return
+        if (.not. motion%dt > 0.0_wp) then
+            status = friction_zero_time_increment
+            if (surface%needs_time() .and. sheared(motion, old)) return
+        end if
+        call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
+            tangential=props(prop_alpha_t)), plane, motion, old, new, traction, tangent, status)
+        if (status < 0) return
+        call pack_state(new, statev)
+    end subroutine advance
+
+    !> The state of a point, which only an update under the same law can have written.
+    pure subroutine unpack_state(surface, ndir, statev, point, status)
+        class(law), intent(in) :: surface
+        integer, intent(in) :: ndir              !! 2: the second tangential component is not used
+        real(wp), intent(in) :: statev(statev_size)
+        type(contact_point), intent(out) :: point
+        integer, intent(out) :: status           !! ok or bad state
+
+        status = friction_bad_state
+        if (.not. all_usable(statev_size, statev)) return
+        point%phase = int(min(max(statev(statev_status), -1.0_wp), 4.0_wp))
+        if (abs(statev(statev_status) - point%phase) > 0.0_wp) return
+        point%u_n = statev(statev_u_n)
+        point%u_et(1) = statev(statev_u_et)
+        point%u_et(2) = 0.0_wp
+        if (ndir > 2) point%u_et(2) = statev(statev_u_et + 1)
+        point%inner%mu = statev(statev_mu)
+        point%inner%r = statev(statev_r)
+        point%slip = statev(statev_slip)
+        point%dissipation = statev(statev_dissipation)
+        select case (point%phase)
+        case (point_virgin)
+            if (any(abs(statev) > 0.0_wp)) return
+            point%inner = surface%virgin()
+        case (point_stick, point_slip, point_open)
+            if (point%slip < 0.0_wp .or. point%dissipation < 0.0_wp) return
+            if (.not. surface%admits(point%inner)) return
+        case default
+            return
+        end select
+        status = friction_ok
+    end subroutine unpack_state
+
+    pure subroutine pack_state(point, statev)
+        type(contact_point), intent(in) :: point
+        real(wp), intent(inout) :: statev(statev_size)
+
+        statev(statev_status) = point%phase
+        statev(statev_u_n) = point%u_n
+        statev(statev_u_et) = point%u_et(1)
+        statev(statev_u_et + 1) = point%u_et(2)
+        statev(statev_mu) = point%inner%mu
+        statev(statev_r) = point%inner%r
+        statev(statev_slip) = point%slip
+        statev(statev_dissipation) = point%dissipation
+    end subroutine pack_state
+
+    !> Does the increment load a closed contact tangentially?
+    pure function sheared(motion, old)
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        logical :: sheared
+
+        sheared = any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)
+        if (motion%pressure_given) then
+            sheared = sheared .and. motion%pressure > 0.0_wp
+        else
+            sheared = sheared .and. old%u_n + motion%du(1) < 0.0_wp
+        end if
+    end function sheared
+
+    !> Is every number finite and below 2**333 (1.7e100) in magnitude, so that products of three
+    !> cannot overflow?
+    pure function all_usable(n, x) result(usable)
+        integer, intent(in) :: n        !! how many numbers
+        real(wp), intent(in) :: x(n)
+        logical :: usable
+        integer(int64) :: seen
+        integer :: i
+
+        seen = 0
+        do i = 1, n
+            seen = ior(seen, oversize(x(i)))
+        end do
+        usable = .not. btest(seen, 62)
+    end function all_usable
+
+    !> A bit pattern whose bit 62 tells a number too large, infinite or NaN.
+    !>
+    !> Reads the exponent as an integer: silent where NaN raises a floating-point exception, and
+    !> right even where the compiler was told that there are no NaNs. An exponent that is too large
+    !> carries into that bit, and nothing else does.
+    pure function oversize(x) result(bits)
+        real(wp), intent(in) :: x
+        integer(int64) :: bits
+        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 51)
+        integer(int64), parameter :: carry = shiftl(2048_int64 - (1023 + 333), 51)
+
+        bits = iand(shiftr(transfer(x, bits), 1), exponent_bits) + carry
+    end function oversize
+
+end submodule friction_advance
