@@ -4,7 +4,7 @@
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end
-    use namelist_input, only : read_number
+    use number_reader, only : read_number
     use platform, only : is_directory
     implicit none
     private
@@ -102,7 +102,7 @@ contains
         type(table), intent(inout) :: read_in
         character(len=name_length) :: word
         integer :: i
-        logical :: ok
+        logical :: ok, small
 
         if (cells_in(line) /= size(read_in%names)) then
             call read_in%add_fault(number, 'has not as many cells as the header')
@@ -113,7 +113,7 @@ contains
         read_in%lines(rows) = number
         do i = 1, size(read_in%names)
             word = cell(line, i)
-            call read_number(trim(word), read_in%values(i, rows), ok)
+            call read_number(trim(word), read_in%values(i, rows), ok, small)
             if (ok) ok = ieee_is_finite(read_in%values(i, rows))
             if (ok) cycle
             read_in%values(i, rows) = 0.0_dp

@@ -1,98 +1,50 @@
-!> Reads a file of namelist groups and finds every fault in it, with its line.
+!> A file of namelist groups, which the program asks for each key that it knows, with its type, rule
+!> and default.
 !>
-!> A Fortran `read` with a namelist stops at the first fault and says little about it. Here the file
-!> is first taken apart into entries `group, key, values`; the program then asks for each key that
-!> it knows, with its type, rule and default. What nobody asked for is a fault, and so is what
-!> breaks its rule. Faults are collected, not thrown.
+!> A Fortran `read` with a namelist stops at the first fault and says little about it. Here what
+!> nobody asked for is a fault, and so is what breaks its rule. Faults are collected, not thrown.
 module namelist_input
-    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_overflow, ieee_set_halting_mode
-    use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end, iostat_eor
-    use platform, only : is_directory
+    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use namelist_parser, only : fault, group_seen, namelist_entry, parse_namelists, parsed_text, &
+        value_token
+    use namelist_rules, only : above, any_number, at_least, between, not_zero, rule
+    use number_reader, only : read_number
+    use printable_text, only : lower, printable
+    use whole_file, only : plain_text, read_whole_file
     implicit none
     private
 
-    public :: above, any_number, at_least, between, fault, lower, namelist_file, &
-        read_namelist_file, read_number, rule
+    public :: above, any_number, at_least, between, fault, lower, namelist_file, not_zero, &
+        read_namelist_file, read_namelist_text, rule
 
-    !> The numbers that a key may take.
-    type :: rule
-        real(dp) :: low = -huge(1.0_dp)
-        real(dp) :: high = huge(1.0_dp)
-        logical :: low_excluded = .false.
-        character(len=:), allocatable :: text   !! in words, after "must be"
-    end type rule
+    integer, parameter :: name_length = 64
+    integer, parameter :: most_shown = 50        !! faults
+    integer, parameter :: most_of_a_list = 10    !! of its values that are refused one by one
 
-    type :: value_token
-        character(len=:), allocatable :: text
-        logical :: quoted = .false.
-    end type value_token
-
-    !> One assignment of the file.
-    type :: namelist_entry
-        character(len=:), allocatable :: group, key
-        integer :: first = 0             !! first subscript; 0 without one
-        integer :: line = 0
-        logical :: known = .false.       !! some part of the program asked for it
-        type(value_token), allocatable :: values(:)
-    end type namelist_entry
-
-    type :: group_seen
-        character(len=:), allocatable :: name
-        integer :: line = 0
-        logical :: known = .false.
-    end type group_seen
-
-    type :: fault
-        integer :: line = 0                     !! 0: of the file as a whole
-        character(len=:), allocatable :: text
-    end type fault
+    !> A key that the program knows, or one that it knows in another place.
+    type :: known_key
+        character(len=name_length) :: group = '', key = ''
+        character(len=:), allocatable :: hint    !! where it belongs; not allocated: here
+    end type known_key
 
     type :: namelist_file
         character(len=:), allocatable :: name
         type(namelist_entry), allocatable :: entries(:)
         type(group_seen), allocatable :: groups(:)
         type(fault), allocatable :: faults(:)
+        logical, private :: broken = .false.     !! the text could not be read to its end
+        type(known_key), allocatable, private :: keys(:)
+        integer, private :: n_keys = 0
     contains
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
+        procedure :: line_of_group, belongs_elsewhere
         procedure :: substitute, value_of, remove, listing
     end type namelist_file
 
 contains
-
-    pure function any_number() result(r)
-        type(rule) :: r
-
-        r%text = 'a number'
-    end function any_number
-
-    pure function above(low) result(r)
-        real(dp), intent(in) :: low
-        type(rule) :: r
-
-        r%low = low
-        r%low_excluded = .true.
-        r%text = '> ' // short(low)
-    end function above
-
-    pure function at_least(low) result(r)
-        real(dp), intent(in) :: low
-        type(rule) :: r
-
-        r%low = low
-        r%text = '>= ' // short(low)
-    end function at_least
-
-    !> From `low` to `high`, both included.
-    pure function between(low, high) result(r)
-        real(dp), intent(in) :: low, high
-        type(rule) :: r
-
-        r%low = low
-        r%high = high
-        r%text = 'from ' // short(low) // ' to ' // short(high)
-    end function between
 
     !> Reads a file whole and takes it apart. `problem` is empty unless the file cannot be read.
     subroutine read_namelist_file(name, file, problem)
@@ -101,373 +53,37 @@ contains
         character(len=:), allocatable, intent(out) :: problem
         character(len=:), allocatable :: text
 
-        file%name = name
-        allocate (file%entries(0), file%groups(0), file%faults(0))
-        call read_whole(name, text, problem)
-        if (len(problem) == 0) call take_apart(text, file)
+        call read_whole_file(name, text, problem)
+        call take_text(name, text, file)
     end subroutine read_namelist_file
 
-    subroutine read_whole(name, text, problem)
-        character(len=*), intent(in) :: name
-        character(len=:), allocatable, intent(out) :: text      !! lines, each ended by a newline
+    !> Takes a text apart that is in memory already.
+    subroutine read_namelist_text(name, text, file, problem)
+        character(len=*), intent(in) :: name   !! for messages; files beside it are looked for there
+        character(len=*), intent(in) :: text
+        type(namelist_file), intent(out) :: file
         character(len=:), allocatable, intent(out) :: problem
-        character(len=1024) :: chunk
-        character(len=256) :: message
-        integer :: unit, status, length
+        character(len=:), allocatable :: lines
 
-        text = ''
-        problem = ''
-        if (is_directory(name)) then
-            problem = 'is a directory'
-            return
-        end if
-        open (newunit=unit, file=name, status='old', action='read', iostat=status, iomsg=message)
-        if (status /= 0) then
-            problem = trim(message)
-            return
-        end if
-        do
-            read (unit, '(a)', advance='no', size=length, iostat=status, iomsg=message) chunk
-            if (status == iostat_end) exit
-            if (status /= 0 .and. status /= iostat_eor) then
-                problem = trim(message)
-                exit
-            end if
-            text = text // chunk(:length)
-            if (status == iostat_eor) text = text // new_line('a')
-        end do
-        close (unit)
-        text = text // new_line('a')
-    end subroutine read_whole
+        call plain_text(text, lines, problem)
+        if (len(problem) > 0) lines = ''
+        call take_text(name, lines, file)
+    end subroutine read_namelist_text
 
-    ! ---- taking the text apart ---------------------------------------------------------------
-
-    !> Scans the text once: groups, keys with subscripts, values.
-    subroutine take_apart(text, file)
-        character(len=*), intent(in) :: text
+    subroutine take_text(name, text, file)
+        character(len=*), intent(in) :: name
+        character(len=*), intent(in) :: text    !! lines, each ended by a line feed
         type(namelist_file), intent(inout) :: file
-        character(len=:), allocatable :: group, name, word
-        integer :: at, line
-        logical :: inside
+        type(parsed_text) :: parsed
 
-        at = 1
-        line = 1
-        inside = .false.
-        group = ''
-        do
-            call skip_blanks(text, at, line, also_commas=inside)
-            if (at > len(text)) exit
-            if (text(at:at) == '&') then
-                at = at + 1
-                name = lower(name_at(text, at))
-                if (inside .and. name /= 'end') call not_ended(file)
-                inside = name /= 'end'
-                if (inside) group = name
-                if (inside) call open_group(file, group, line)
-            else if (.not. inside) then
-                word = rest_of_line(text, at)
-                call file%add_fault(line, "text outside any group: '" // word // "'")
-                at = at + len(word)
-            else if (text(at:at) == '/') then
-                at = at + 1
-                inside = .false.
-            else
-                call read_entry(text, at, line, group, file)
-            end if
-        end do
-        if (inside) call not_ended(file)
-    end subroutine take_apart
-
-    !> The group that was opened last has no end.
-    subroutine not_ended(file)
-        type(namelist_file), intent(inout) :: file
-
-        associate (group => file%groups(size(file%groups)))
-            call file%add_fault(group%line, 'group &' // group%name // " is not ended by '/'")
-        end associate
-    end subroutine not_ended
-
-    subroutine open_group(file, group, line)
-        type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group
-        integer, intent(in) :: line
-        type(group_seen) :: seen
-        integer :: i
-
-        do i = 1, size(file%groups)
-            if (file%groups(i)%name == group) then
-                call file%add_fault(line, 'group &' // group // ' is given twice, first in line ' &
-                    // whole(file%groups(i)%line))
-            end if
-        end do
-        seen%name = group
-        seen%line = line
-        file%groups = [file%groups, seen]
-    end subroutine open_group
-
-    !> `key = values`, `key(i) = ...` or `key(i:j) = ...`
-    subroutine read_entry(text, at, line, group, file)
-        character(len=*), intent(in) :: text, group
-        integer, intent(inout) :: at, line
-        type(namelist_file), intent(inout) :: file
-        type(namelist_entry) :: entry
-        character(len=:), allocatable :: problem
-
-        entry%group = group
-        entry%line = line
-        entry%key = lower(name_at(text, at))
-        allocate (entry%values(0))
-        if (len(entry%key) == 0) then
-            call file%add_fault(line, '&' // group // ": expected 'key = value', found '" &
-                // rest_of_token(text, at) // "'")
-            at = at + len(rest_of_token(text, at))
-            return
-        end if
-        problem = ''
-        call read_subscript(text, at, entry%first, problem)
-        call skip_blanks(text, at, line, also_commas=.false.)
-        if (at > len(text)) then
-            problem = "expected '=' after the key"
-        else if (text(at:at) /= '=') then
-            problem = "expected '=' after the key"
-        end if
-        if (len(problem) > 0) then
-            call file%add_fault(line, '&' // group // ' ' // entry%key // ': ' // problem)
-            if (at <= len(text)) then
-                if (index('/&', text(at:at)) == 0) at = at + len(rest_of_token(text, at))
-            end if
-            return
-        end if
-        at = at + 1
-        call read_values(text, at, line, entry, problem)
-        if (len(problem) > 0) then
-            call file%add_fault(entry%line, '&' // group // ' ' // entry%key // ': ' // problem)
-        end if
-        file%entries = [file%entries, entry]
-    end subroutine read_entry
-
-    subroutine read_subscript(text, at, first, problem)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at
-        integer, intent(out) :: first
-        character(len=:), allocatable, intent(inout) :: problem
-        character(len=:), allocatable :: inner
-        integer :: bracket, colon, status
-
-        first = 0
-        do while (at < len(text))
-            if (text(at:at) /= ' ') exit
-            at = at + 1
-        end do
-        if (at > len(text)) return
-        if (text(at:at) /= '(') return
-        bracket = index(text(at:), ')')
-        if (bracket == 0) then
-            problem = "subscript without ')'"
-            return
-        end if
-        inner = text(at + 1:at + bracket - 2)
-        at = at + bracket
-        colon = index(inner, ':')
-        if (colon > 0) inner = inner(:colon - 1)   ! the values themselves tell how many they are
-        first = 1
-        if (len_trim(inner) == 0) return
-        status = verify(trim(adjustl(inner)), '0123456789')
-        if (status == 0) read (inner, *, iostat=status) first
-        if (status /= 0 .or. first < 1) problem = "'(" // inner // ")' is not a subscript"
-    end subroutine read_subscript
-
-    !> Values up to the next key or the end of the group.
-    subroutine read_values(text, at, line, entry, problem)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at, line
-        type(namelist_entry), intent(inout) :: entry
-        character(len=:), allocatable, intent(inout) :: problem
-        type(value_token) :: token
-        integer :: repeat, i
-        logical :: after_comma
-
-        after_comma = .true.
-        do
-            call skip_blanks(text, at, line, also_commas=.false.)
-            if (at > len(text)) exit
-            if (text(at:at) == ',') then
-                if (after_comma) problem = 'a value is missing before a comma'
-                after_comma = .true.
-                at = at + 1
-                cycle
-            end if
-            if (index('/&', text(at:at)) > 0) exit
-            if (key_follows(text, at)) exit
-            call read_token(text, at, token, repeat, problem)
-            after_comma = .false.
-            do i = 1, repeat
-                entry%values = [entry%values, token]
-            end do
-        end do
-        if (size(entry%values) == 0) problem = 'has no value'
-    end subroutine read_values
-
-    !> Is the word here a key, that is, followed by '=' (perhaps after a subscript)?
-    function key_follows(text, at) result(follows)
-        character(len=*), intent(in) :: text
-        integer, intent(in) :: at
-        logical :: follows
-        integer :: i
-
-        follows = .false.
-        i = at
-        if (len(name_at(text, i)) == 0) return
-        i = i + verify_blank(text, i)
-        if (i > len(text)) return
-        if (text(i:i) == '(') then
-            i = i + index(text(i:) // ')', ')')
-            i = i + verify_blank(text, i)
-            if (i > len(text)) return
-        end if
-        follows = text(i:i) == '='
-    end function key_follows
-
-    !> Number of blanks, tabs and newlines at a place.
-    pure function verify_blank(text, at) result(count)
-        character(len=*), intent(in) :: text
-        integer, intent(in) :: at
-        integer :: count
-
-        count = 0
-        do while (at + count <= len(text))
-            if (.not. is_blank(text(at + count:at + count))) exit
-            count = count + 1
-        end do
-    end function verify_blank
-
-    !> One value, quoted or not, with its repeat count `r*value`.
-    subroutine read_token(text, at, token, repeat, problem)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at
-        type(value_token), intent(out) :: token
-        integer, intent(out) :: repeat
-        character(len=:), allocatable, intent(inout) :: problem
-        integer, parameter :: most = 100000
-        integer :: star, status
-        character(len=:), allocatable :: word
-
-        repeat = 1
-        token%text = ''
-        if (text(at:at) == "'" .or. text(at:at) == '"') then
-            call read_quoted(text, at, token%text, problem)
-            token%quoted = .true.
-            return
-        end if
-        word = rest_of_token(text, at)
-        at = at + len(word)
-        token%text = word
-        star = index(word, '*')
-        if (star <= 1) return
-        if (verify(word(:star - 1), '0123456789') /= 0) return
-        read (word(:star - 1), *, iostat=status) repeat
-        if (status /= 0 .or. repeat < 1 .or. repeat > most) then
-            problem = "'" // word // "' repeats a value too often, or not at all"
-            repeat = 0
-        end if
-        token%text = word(star + 1:)
-    end subroutine read_token
-
-    subroutine read_quoted(text, at, inner, problem)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at
-        character(len=:), allocatable, intent(out) :: inner
-        character(len=:), allocatable, intent(inout) :: problem
-        character(len=1) :: quote
-
-        quote = text(at:at)
-        inner = ''
-        at = at + 1
-        do
-            if (at > len(text)) then
-                problem = 'text is not ended by a quote'
-                return
-            end if
-            if (text(at:at) == new_line('a')) then
-                problem = 'text is not ended by a quote'
-                return
-            end if
-            if (text(at:at) == quote) then
-                at = at + 1
-                if (at > len(text)) return
-                if (text(at:at) /= quote) return
-            end if
-            inner = inner // text(at:at)
-            at = at + 1
-        end do
-    end subroutine read_quoted
-
-    !> Moves past blanks, comments and, between entries, commas.
-    subroutine skip_blanks(text, at, line, also_commas)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at, line
-        logical, intent(in) :: also_commas
-
-        do while (at <= len(text))
-            if (text(at:at) == '!') then
-                at = at + len(rest_of_line(text, at))
-            else if (is_blank(text(at:at))) then
-                if (text(at:at) == new_line('a')) line = line + 1
-                at = at + 1
-            else if (also_commas .and. text(at:at) == ',') then
-                at = at + 1
-            else
-                exit
-            end if
-        end do
-    end subroutine skip_blanks
-
-    pure function is_blank(c) result(blank)
-        character(len=1), intent(in) :: c
-        logical :: blank
-
-        blank = c == ' ' .or. c == achar(9) .or. c == achar(13) .or. c == new_line('a')
-    end function is_blank
-
-    !> The name that starts here, and `at` moved behind it; empty if none does.
-    function name_at(text, at) result(name)
-        character(len=*), intent(in) :: text
-        integer, intent(inout) :: at
-        character(len=:), allocatable :: name
-        character(len=*), &
-            parameter :: letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
-        integer :: start
-
-        start = at
-        if (index(letters, text(at:at)) > 0) then
-            do while (at <= len(text))
-                if (index(letters // '0123456789_%', text(at:at)) == 0) exit
-                at = at + 1
-            end do
-        end if
-        name = text(start:at - 1)
-    end function name_at
-
-    pure function rest_of_line(text, at) result(rest)
-        character(len=*), intent(in) :: text
-        integer, intent(in) :: at
-        character(len=:), allocatable :: rest
-
-        rest = text(at:at - 2 + index(text(at:) // new_line('a'), new_line('a')))
-    end function rest_of_line
-
-    !> Up to a blank, a comma, a comment, or a sign that ends the group.
-    pure function rest_of_token(text, at) result(rest)
-        character(len=*), intent(in) :: text
-        integer, intent(in) :: at
-        character(len=:), allocatable :: rest
-        integer :: i
-
-        do i = at, len(text)
-            if (is_blank(text(i:i)) .or. index(',/!&', text(i:i)) > 0) exit
-        end do
-        rest = text(at:max(at, i - 1))
-    end function rest_of_token
+        call parse_namelists(text, parsed)
+        file%name = name
+        file%broken = parsed%broken
+        call move_alloc(parsed%entries, file%entries)
+        call move_alloc(parsed%groups, file%groups)
+        call move_alloc(parsed%faults, file%faults)
+        allocate (file%keys(32))
+    end subroutine take_text
 
     ! ---- asking for keys ---------------------------------------------------------------------
 
@@ -478,6 +94,7 @@ contains
         logical :: found
         integer :: i
 
+        call note(self, group, '')
         found = .false.
         do i = 1, size(self%groups)
             if (self%groups(i)%name /= group) cycle
@@ -485,6 +102,19 @@ contains
             found = .true.
         end do
     end function has_group
+
+    !> Where does the group start? 0: the file does not have it.
+    pure function line_of_group(self, group) result(line)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group
+        integer :: line
+        integer :: i
+
+        line = 0
+        do i = size(self%groups), 1, -1
+            if (self%groups(i)%name == group) line = self%groups(i)%line
+        end do
+    end function line_of_group
 
     !> Is the key in the file?
     pure function given(self, group, key) result(found)
@@ -511,11 +141,14 @@ contains
         value = 0.0_dp
         if (present(default)) value = default
         if (.not. self%given(group, key)) then
+            call note(self, group, key)
             if (.not. present(default)) call self%require(group, key)
             return
         end if
         call self%get_reals(group, key, values, allowed)
-        if (size(values) > 1) then
+        if (has_subscript(self, group, key)) then
+            call self%reject(group, key, 'takes one value, and no subscript')
+        else if (size(values) > 1) then
             call self%reject(group, key, 'takes one value, not ' // whole(size(values)))
         end if
         if (size(values) > 0) value = values(1)
@@ -528,28 +161,63 @@ contains
         real(dp), allocatable, intent(out) :: values(:)
         type(rule), intent(in) :: allowed
         type(value_token), allocatable :: tokens(:)
-        integer :: i
-        logical :: ok, sound
+        character(len=:), allocatable :: why
+        integer :: refused, i
+        logical :: sound
 
         call gather(self, group, key, tokens)
         allocate (values(size(tokens)))
         sound = .true.
+        refused = 0
         do i = 1, size(tokens)
-            call read_number(tokens(i)%text, values(i), ok)
-            ok = ok .and. .not. tokens(i)%quoted
-            sound = sound .and. ok
-            if (.not. ok) then
-                call self%reject(group, key, 'must be a number', token=tokens(i))
-            else if (.not. ieee_is_finite(values(i))) then
-                call self%reject(group, key, 'must be finite', token=tokens(i))
-                sound = .false.
-            else if (values(i) < allowed%low .or. values(i) > allowed%high &
-                .or. (allowed%low_excluded .and. .not. values(i) > allowed%low)) then
-                call self%reject(group, key, 'must be ' // allowed%text, token=tokens(i))
-            end if
+            call take_number(tokens(i), allowed, values(i), sound, why)
+            if (len(why) == 0) cycle
+            refused = refused + 1
+            if (refused <= most_of_a_list) call self%reject(group, key, why, token=tokens(i))
         end do
+        if (refused > most_of_a_list) call self%reject(group, key, whole(refused &
+            - most_of_a_list) // ' more of its values are refused')
         if (.not. sound) values = [real(dp) ::]
     end subroutine get_reals
+
+    subroutine take_number(token, allowed, value, sound, why)
+        type(value_token), intent(in) :: token
+        type(rule), intent(in) :: allowed
+        real(dp), intent(out) :: value
+        logical, intent(inout) :: sound                      !! false where there is no number
+        character(len=:), allocatable, intent(out) :: why    !! it is refused; or empty
+        logical :: is_number, too_small
+
+        why = ''
+        call read_number(token%text, value, is_number, too_small)
+        if (token%quoted .or. .not. is_number) then
+            why = 'must be a number'
+        else if (.not. ieee_is_finite(value)) then
+            why = 'must be finite'
+            if (scan(token%text, '0123456789') > 0) why = 'must be finite: it is larger than ' &
+                // 'any number here, 1.8e308'
+        else if (too_small) then
+            why = 'is smaller than any number here but 0, 4.9e-324'
+        else if (.not. allowed%holds(value)) then
+            why = 'must be ' // allowed%text
+            return
+        end if
+        sound = sound .and. len(why) == 0
+    end subroutine take_number
+
+    !> Does a key of one value have a subscript?
+    pure function has_subscript(self, group, key) result(found)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group, key
+        logical :: found
+        integer :: i
+
+        found = .false.
+        do i = 1, size(self%entries)
+            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            found = found .or. self%entries(i)%subscripted
+        end do
+    end function has_subscript
 
     !> A whole number.
     subroutine get_integer(self, group, key, value, allowed, default)
@@ -645,61 +313,104 @@ contains
         logical, intent(out) :: value
         logical, intent(in) :: default
         type(value_token), allocatable :: tokens(:)
-        character(len=7), parameter :: words(6) = ['.true. ', 't      ', 'true   ', &
-            '.false.', 'f      ', 'false  ']
-        integer :: place
+        character(len=7), parameter :: yes(6) = [character(len=7) :: '.true.', '.true', '.t.', &
+            '.t', 'true', 't']
+        character(len=7), parameter :: no(6) = [character(len=7) :: '.false.', '.false', '.f.', &
+            '.f', 'false', 'f']
 
         value = default
         call gather(self, group, key, tokens)
         if (size(tokens) == 0) return
-        place = place_in(words, lower(tokens(1)%text))
-        if (size(tokens) > 1) then
+        value = any(yes == lower(tokens(1)%text))
+        if (size(tokens) > 1 .or. has_subscript(self, group, key)) then
             call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
-        else if (tokens(1)%quoted .or. place == 0) then
+        else if (tokens(1)%quoted .or. .not. (value .or. any(no == lower(tokens(1)%text)))) then
             call self%reject(group, key, 'must be .true. or .false.', token=tokens(1))
-        else
-            value = place <= 3
         end if
     end subroutine get_logical
 
-    !> Collects the values of a key in the order of their subscripts, and says that the key is
-    !> known.
+    !> Collects the values of a key in the order of their places, and says that the key is known.
+    !> Nothing is collected where something is wrong.
     subroutine gather(self, group, key, tokens)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
         type(value_token), allocatable, intent(out) :: tokens(:)
-        logical, allocatable :: filled(:), longer(:)
-        type(value_token), allocatable :: extended(:)
-        integer :: i, first, last
-        logical :: again
+        logical, allocatable :: filled(:)
+        integer :: last, place, i, k
+        logical :: faulty, again
 
-        allocate (tokens(0), filled(0))
+        call note(self, group, key)
+        last = 0
+        faulty = .false.
+        do i = 1, size(self%entries)
+            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            self%entries(i)%known = .true.
+            faulty = faulty .or. self%entries(i)%faulty
+            last = max(last, place_of(self%entries(i), 1), &
+                place_of(self%entries(i), size(self%entries(i)%values)))
+        end do
+        if (faulty) last = 0
+        allocate (tokens(last), filled(last))
+        if (last == 0) return
+        filled = .false.
         again = .false.
         do i = 1, size(self%entries)
-            associate (entry => self%entries(i))
-                if (entry%group /= group .or. entry%key /= key) cycle
-                entry%known = .true.
-                first = max(entry%first, 1)
-                last = first + size(entry%values) - 1
-                if (last > size(tokens)) then
-                    allocate (extended(last), longer(last))
-                    extended(:size(tokens)) = tokens
-                    longer = .false.
-                    longer(:size(filled)) = filled
-                    call move_alloc(extended, tokens)
-                    call move_alloc(longer, filled)
-                end if
-                again = again .or. any(filled(first:last))
-                tokens(first:last) = entry%values
-                filled(first:last) = .true.
-            end associate
+            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
+            do k = 1, size(self%entries(i)%values)
+                place = place_of(self%entries(i), k)
+                again = again .or. filled(place)
+                tokens(place) = self%entries(i)%values(k)
+                filled(place) = .true.
+            end do
         end do
         if (again) call self%reject(group, key, 'is given twice')
-        if (.not. all(filled)) then
-            call self%reject(group, key, 'has gaps between its subscripts')
-            tokens = [value_token ::]
-        end if
+        if (.not. all(filled)) call self%reject(group, key, 'has gaps between its subscripts')
+        if (.not. all(filled)) tokens = [value_token ::]
     end subroutine gather
+
+    !> Where in its list does the k-th value of an entry stand?
+    pure function place_of(entry, k) result(place)
+        type(namelist_entry), intent(in) :: entry
+        integer, intent(in) :: k
+        integer :: place
+
+        place = entry%first + (k - 1) * entry%stride
+    end function place_of
+
+    !> Remembers that the program knows a key, or with an empty key a group.
+    subroutine note(self, group, key)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        type(known_key), allocatable :: more(:)
+        integer :: i
+
+        do i = 1, self%n_keys
+            if (self%keys(i)%key /= key .or. self%keys(i)%group /= group) cycle
+            if (.not. allocated(self%keys(i)%hint)) return
+        end do
+        if (self%n_keys == size(self%keys)) then
+            allocate (more(2 * self%n_keys))
+            more(:self%n_keys) = self%keys
+            call move_alloc(more, self%keys)
+        end if
+        self%n_keys = self%n_keys + 1
+        self%keys(self%n_keys)%group = group
+        self%keys(self%n_keys)%key = key
+    end subroutine note
+
+    !> What to say of a key if it is given where the program does not ask for it, such as `belongs
+    !> to the law 'coulomb'`. Of several hints to one key the first one counts.
+    subroutine belongs_elsewhere(self, group, key, hint)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key, hint
+        integer :: i
+
+        do i = 1, self%n_keys
+            if (self%keys(i)%key == key .and. self%keys(i)%group == group) return
+        end do
+        call note(self, group, key)
+        self%keys(self%n_keys)%hint = hint
+    end subroutine belongs_elsewhere
 
     !> Notes a fault if a key is not given; where its whole group is missing, that fault stands for
     !> it.
@@ -708,6 +419,7 @@ contains
         character(len=*), intent(in) :: group, key
         integer :: i
 
+        call note(self, group, key)
         if (self%given(group, key)) return
         do i = 1, size(self%groups)
             if (self%groups(i)%name /= group) cycle
@@ -724,29 +436,33 @@ contains
         type(value_token), intent(in), optional :: token
         character(len=:), allocatable :: value
         integer :: i, line
+        logical :: faulty
 
         line = 0
         value = ''
+        faulty = .false.
         do i = 1, size(self%entries)
             if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
             self%entries(i)%known = .true.
+            faulty = faulty .or. self%entries(i)%faulty
             line = self%entries(i)%line
             if (size(self%entries(i)%values) == 1) value = shown(self%entries(i)%values(1))
         end do
         if (present(token)) value = shown(token)
         if (len(value) > 0) value = ' = ' // value
         call self%add_fault(line, '&' // group // ' ' // key // value // ': ' // why)
+        if (faulty) self%faults(size(self%faults))%hidden = .true.
     end subroutine reject
 
     pure function shown(token) result(text)
         type(value_token), intent(in) :: token
         character(len=:), allocatable :: text
 
-        text = token%text
+        text = printable(token%text)
         if (token%quoted) text = "'" // text // "'"
     end function shown
 
-    !> Notes every group and key that nobody asked for.
+    !> Notes every group and key that nobody asked for, with the name that may have been meant.
     subroutine refuse_unknown(self)
         class(namelist_file), intent(inout) :: self
         integer :: i
@@ -754,14 +470,73 @@ contains
         do i = 1, size(self%groups)
             if (self%groups(i)%known) cycle
             call self%add_fault(self%groups(i)%line, '&' // self%groups(i)%name &
-                // ': unknown group')
+                // ': unknown group' // suggestion(self, self%groups(i)%name, ''))
         end do
         do i = 1, size(self%entries)
-            if (self%entries(i)%known .or. .not. known_group(self, self%entries(i)%group)) cycle
-            call self%add_fault(self%entries(i)%line, '&' // self%entries(i)%group // ' ' &
-                // self%entries(i)%key // ': unknown key')
+            associate (entry => self%entries(i))
+                if (entry%known .or. entry%faulty .or. .not. known_group(self, entry%group)) cycle
+                call self%add_fault(entry%line, '&' // entry%group // ' ' // entry%key &
+                    // ': unknown key' // suggestion(self, entry%group, entry%key))
+            end associate
         end do
     end subroutine refuse_unknown
+
+    !> A hint to where a key belongs, another group that has it, or a key that is spelled much like
+    !> it; with an empty key the same of a group. Empty where there is nothing to say.
+    pure function suggestion(self, group, key) result(text)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group, key
+        character(len=:), allocatable :: text
+        character(len=name_length + 1) :: nearest
+        integer :: distance, least, i
+
+        text = ''
+        nearest = ''
+        least = max(1, len_trim(key // group) / 3) + 1
+        if (len(key) > 0) least = max(1, len(key) / 3) + 1
+        do i = 1, self%n_keys
+            associate (known => self%keys(i))
+                if ((len(key) == 0) .neqv. (len_trim(known%key) == 0)) cycle
+                if (known%key == key .and. len(key) > 0) then
+                    text = '; &' // trim(known%group) // ' has a key of that name'
+                    if (allocated(known%hint)) text = '; ' // known%hint
+                    if (known%group == group) return
+                    cycle
+                end if
+                if (len(key) > 0 .and. known%group /= group) cycle
+                if (allocated(known%hint)) cycle
+                if (len(key) > 0) distance = edits(key, trim(known%key))
+                if (len(key) == 0) distance = edits(group, trim(known%group))
+                if (distance >= least) cycle
+                least = distance
+                nearest = known%key
+                if (len(key) == 0) nearest = '&' // known%group
+            end associate
+        end do
+        if (len_trim(nearest) > 0) text = "; did you mean '" // trim(nearest) // "'?"
+    end function suggestion
+
+    !> How many letters must be changed, added, taken out or exchanged with the next one to turn
+    !> one word into another?
+    pure function edits(from, to) result(n)
+        character(len=*), intent(in) :: from, to
+        integer :: n
+        integer :: d(-1:len(from), -1:len(to)), cost, i, j
+
+        d = len(from) + len(to)
+        d(0:, 0) = [(i, i = 0, len(from))]
+        d(0, 0:) = [(j, j = 0, len(to))]
+        do j = 1, len(to)
+            do i = 1, len(from)
+                cost = merge(0, 1, from(i:i) == to(j:j))
+                d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, d(i - 1, j - 1) + cost)
+                if (min(i, j) == 1) cycle
+                if (from(i:i) == to(j - 1:j - 1) .and. from(i - 1:i - 1) == to(j:j)) d(i, j) = &
+                    min(d(i, j), d(i - 2, j - 2) + 1)
+            end do
+        end do
+        n = d(len(from), len(to))
+    end function edits
 
     pure function known_group(self, name) result(known)
         class(namelist_file), intent(in) :: self
@@ -775,21 +550,32 @@ contains
         end do
     end function known_group
 
-    !> The faults as lines of text, in the order of the file.
+    !> The faults as lines of text, in the order of the file, up to a screenful.
     function describe_faults(self) result(text)
         class(namelist_file), intent(in) :: self
         character(len=:), allocatable :: text
-        integer :: line, i
+        integer, allocatable :: order(:)
+        integer :: swap, i, j
 
-        text = ''
-        do line = 0, maxval([0, self%faults%line])
-            do i = 1, size(self%faults)
-                if (self%faults(i)%line /= line) cycle
-                text = text // self%name
-                if (line > 0) text = text // ':' // whole(line)
-                text = text // ': ' // self%faults(i)%text // new_line('a')
+        order = pack([(i, i = 1, size(self%faults))], .not. self%faults%hidden)
+        do i = 2, size(order)
+            do j = i, 2, -1
+                if (self%faults(order(j))%line >= self%faults(order(j - 1))%line) exit
+                swap = order(j)
+                order(j) = order(j - 1)
+                order(j - 1) = swap
             end do
         end do
+        text = ''
+        do i = 1, min(size(order), most_shown)
+            associate (this => self%faults(order(i)))
+                text = text // self%name
+                if (this%line > 0) text = text // ':' // whole(this%line)
+                text = text // ': ' // this%text // new_line('a')
+            end associate
+        end do
+        if (size(order) > most_shown) text = text // self%name // ': and ' &
+            // whole(size(order) - most_shown) // ' faults more' // new_line('a')
     end function describe_faults
 
     !> Gives a key one value in place of all that it has: the i-th value of another key. A key or a
@@ -799,31 +585,49 @@ contains
         character(len=*), intent(in) :: group, key
         character(len=*), intent(in) :: from_group, from_key   !! given, with `i` values or more
         integer, intent(in) :: i                               !! >= 1
-        type(value_token), allocatable :: tokens(:)
         type(namelist_entry) :: entry
         type(group_seen) :: seen
-        logical :: there
-        integer :: j
+        integer :: j, k
 
-        call gather(self, from_group, from_key, tokens)
         entry%group = group
         entry%key = key
-        entry%values = [tokens(i)]
         do j = 1, size(self%entries)
-            if (self%entries(j)%group /= from_group .or. self%entries(j)%key /= from_key) cycle
-            entry%line = self%entries(j)%line
+            associate (from => self%entries(j))
+                if (from%group /= from_group .or. from%key /= from_key) cycle
+                k = 1 + (i - from%first) / from%stride
+                if (k < 1 .or. k > size(from%values)) cycle
+                if (place_of(from, k) /= i) cycle
+                entry%line = from%line
+                entry%values = [from%values(k)]
+            end associate
         end do
-        call self%remove(group, key)
-        self%entries = [self%entries, entry]
-        there = .false.
-        do j = 1, size(self%groups)
-            there = there .or. self%groups(j)%name == group
-        end do
-        if (there) return
+        call replace(self, entry)
+        if (self%line_of_group(group) > 0) return
         seen%name = group
         seen%line = entry%line
         self%groups = [self%groups, seen]
     end subroutine substitute
+
+    !> Puts an entry in place of all that its key has. Long lists of other keys are not copied.
+    subroutine replace(self, entry)
+        class(namelist_file), intent(inout) :: self
+        type(namelist_entry), intent(in) :: entry
+        integer :: places, first, i
+
+        places = 0
+        first = 0
+        do i = size(self%entries), 1, -1
+            if (self%entries(i)%group /= entry%group .or. self%entries(i)%key /= entry%key) cycle
+            places = places + 1
+            first = i
+        end do
+        if (places == 1) then
+            self%entries(first) = entry
+        else
+            call self%remove(entry%group, entry%key)
+            self%entries = [self%entries, entry]
+        end if
+    end subroutine replace
 
     !> The first value of a key as the file has it; empty if it has none.
     pure function value_of(self, group, key) result(text)
@@ -864,10 +668,11 @@ contains
         do i = 1, size(self%entries)
             associate (entry => self%entries(i))
                 text = text // '&' // entry%group // ' ' // entry%key
-                if (entry%first > 0) text = text // '(' // whole(entry%first) // ')'
+                if (entry%subscripted) text = text // '(' // whole(entry%first) // '::' &
+                    // whole(entry%stride) // ')'
                 text = text // ' ='
                 do j = 1, size(entry%values)
-                    text = text // ' ' // shown(entry%values(j))
+                    text = text // ' ' // quoted(entry%values(j))
                 end do
                 text = text // new_line('a')
             end associate
@@ -883,41 +688,19 @@ contains
 
         new%line = line
         new%text = text
+        new%hidden = self%broken
         self%faults = [self%faults, new]
     end subroutine add_fault
 
     ! ---- small things ------------------------------------------------------------------------
 
-    !> A real number as Fortran and its neighbours write it; also NaN and infinity, which the caller
-    !> refuses by name.
-    subroutine read_number(text, value, ok)
-        character(len=*), intent(in) :: text
-        real(dp), intent(out) :: value
-        logical, intent(out) :: ok
-        character(len=:), allocatable :: word
-        integer :: status, i
+    pure function quoted(token) result(text)
+        type(value_token), intent(in) :: token
+        character(len=:), allocatable :: text
 
-        value = 0.0_dp
-        word = lower(text)
-        ok = len(word) > 0
-        if (.not. ok) return
-        if (verify(word, '0123456789+-.ed') /= 0) then
-            i = 1
-            if (index('+-', word(1:1)) > 0) i = 2
-            ok = any(word(i:) == ['nan     ', 'inf     ', 'infinity'])
-        else
-            ! "1-3" is a number to Fortran alone, and "1e" or "." to nobody
-            do i = 2, len(word)
-                if (index('+-', word(i:i)) > 0) ok = ok .and. index('ed', word(i - 1:i - 1)) > 0
-            end do
-            ok = ok .and. scan(word, '0123456789') > 0 .and. verify(word(len(word):), &
-                '0123456789.') == 0
-        end if
-        if (.not. ok) return
-        call ieee_set_halting_mode(ieee_overflow, .false.)  ! 1e999 is infinite, and refused as such
-        read (word, *, iostat=status) value
-        ok = status == 0
-    end subroutine read_number
+        text = token%text
+        if (token%quoted) text = "'" // text // "'"
+    end function quoted
 
     !> Which of the choices is it? 0: none.
     pure function place_in(choices, text) result(place)
@@ -929,18 +712,6 @@ contains
         end do
     end function place_in
 
-    pure function lower(text) result(lowered)
-        character(len=*), intent(in) :: text
-        character(len=len(text)) :: lowered
-        integer :: i
-
-        lowered = text
-        do i = 1, len(text)
-            if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') lowered(i:i) = achar(iachar(text(i:i)) &
-                + 32)
-        end do
-    end function lower
-
     pure function whole(number) result(text)
         integer, intent(in) :: number
         character(len=:), allocatable :: text
@@ -949,25 +720,5 @@ contains
         write (buffer, '(i0)') number
         text = trim(buffer)
     end function whole
-
-    !> A number with no more digits than it needs.
-    pure recursive function short(number) result(text)
-        real(dp), intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=24) :: buffer
-        integer :: exponent
-
-        if (abs(number - anint(number)) <= 0.0_dp) then
-            text = whole(nint(number))
-        else if (abs(number) < 1.0e-3_dp) then
-            exponent = floor(log10(abs(number)) + 1.0e-9_dp)
-            text = short(1.0e-3_dp * anint(1.0e3_dp * number / 10.0_dp**exponent)) // 'e' &
-                // whole(exponent)
-        else
-            write (buffer, '(f24.3)') number
-            text = trim(adjustl(buffer))
-            text = text(:verify(text, '0', back=.true.))
-        end if
-    end function short
 
 end module namelist_input

@@ -1,0 +1,69 @@
+!> Words of a file as a message shows them.
+module printable_text
+    implicit none
+    private
+
+    public :: lower, printable
+
+contains
+
+    !> Cut where it is long; characters that nobody sees are shown as their codes.
+    pure function printable(text) result(shown)
+        character(len=*), intent(in) :: text
+        character(len=:), allocatable :: shown
+        integer, parameter :: most = 60
+        character(len=*), parameter :: hex = '0123456789ABCDEF'
+        integer :: code, hidden, i
+
+        shown = ''
+        hidden = 0   ! bytes of the character that are still to be shown as codes
+        do i = 1, len(text)
+            code = iachar(text(i:i))
+            if (hidden == 0) hidden = unseen(text(i:))
+            if (hidden > 0) then
+                shown = shown // '\x' // hex(code / 16 + 1:code / 16 + 1) &
+                    // hex(mod(code, 16) + 1:mod(code, 16) + 1)
+                hidden = hidden - 1
+            else
+                shown = shown // text(i:i)
+            end if
+            if (len(shown) >= most .and. i < len(text)) then
+                shown = shown // '...'
+                exit
+            end if
+        end do
+    end function printable
+
+    !> Bytes of the character at the start, if it does not show: a control character, or in UTF-8 a
+    !> blank, a joiner or a mark other than the ASCII blank.
+    pure function unseen(text) result(bytes)
+        character(len=*), intent(in) :: text   !! not empty
+        integer :: bytes
+        integer :: codes(3), i
+
+        codes = 0
+        do i = 1, min(3, len(text))
+            codes(i) = iachar(text(i:i))
+        end do
+        bytes = 0
+        if (codes(1) < 32 .or. codes(1) == 127) bytes = 1
+        if (codes(1) == 194 .and. codes(2) >= 128 .and. codes(2) <= 160) bytes = 2
+        if (codes(1) == 226 .and. codes(2) == 128 .and. codes(3) < 176) then
+            if (codes(3) < 144 .or. codes(3) > 167) bytes = 3   ! between: dashes and quotes
+        end if
+        if (all(codes == [239, 187, 191])) bytes = 3
+    end function unseen
+
+    pure function lower(text) result(lowered)
+        character(len=*), intent(in) :: text
+        character(len=len(text)) :: lowered
+        integer :: i
+
+        lowered = text
+        do i = 1, len(text)
+            if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') lowered(i:i) = achar(iachar(text(i:i)) &
+                + 32)
+        end do
+    end function lower
+
+end module printable_text

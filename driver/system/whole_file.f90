@@ -1,0 +1,223 @@
+!> Reads text files whole, through the C library: from disks, pipes and devices alike. Byte-order
+!> marks, UTF-16 and the line ends of other systems are turned into plain lines of UTF-8.
+module whole_file
+    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_ptr, &
+        c_size_t
+    use platform, only : is_directory
+    implicit none
+    private
+
+    public :: plain_text, read_whole_file
+
+    character(len=*), parameter :: utf8_mark = char(239) // char(187) // char(191)
+    character(len=*), parameter :: little_endian_mark = char(255) // char(254)
+    character(len=*), parameter :: big_endian_mark = char(254) // char(255)
+    character(len=1), parameter :: carriage_return = achar(13), line_feed = achar(10)
+
+    interface
+        function c_fopen(name, mode) result(stream) bind(C, name='fopen')
+            import :: c_char, c_ptr
+            implicit none
+            character(kind=c_char), intent(in) :: name(*), mode(*)
+            type(c_ptr) :: stream
+        end function c_fopen
+
+        function c_fread(buffer, item_size, items, stream) result(taken) bind(C, name='fread')
+            import :: c_char, c_ptr, c_size_t
+            implicit none
+            character(kind=c_char), intent(inout) :: buffer(*)
+            integer(c_size_t), value, intent(in) :: item_size, items
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_size_t) :: taken
+        end function c_fread
+
+        function c_ferror(stream) result(status) bind(C, name='ferror')
+            import :: c_int, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_int) :: status
+        end function c_ferror
+
+        function c_fclose(stream) result(status) bind(C, name='fclose')
+            import :: c_int, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_int) :: status
+        end function c_fclose
+    end interface
+
+contains
+
+    !> The text of a file, as `plain_text` makes it. `problem` says why there is none, or is empty.
+    subroutine read_whole_file(name, text, problem)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable, intent(out) :: text
+        character(len=:), allocatable, intent(out) :: problem
+        character(len=:), allocatable :: bytes
+
+        text = ''
+        if (is_directory(name)) then
+            problem = 'is a directory'
+            return
+        end if
+        call read_bytes(name, bytes, problem)
+        if (len(problem) == 0) call plain_text(bytes, text, problem)
+    end subroutine read_whole_file
+
+    subroutine read_bytes(name, bytes, problem)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable, intent(out) :: bytes
+        character(len=:), allocatable, intent(out) :: problem
+        integer, parameter :: most = 536870911   ! in UTF-16 they become half as many again
+        character(len=65536) :: chunk
+        type(c_ptr) :: stream
+        integer :: length, taken
+
+        problem = ''
+        stream = c_fopen(name // c_null_char, 'r' // c_null_char)
+        if (.not. c_associated(stream)) then
+            problem = why_not_opened(name)
+            return
+        end if
+        allocate (character(len=len(chunk)) :: bytes)
+        length = 0
+        do
+            taken = int(c_fread(chunk, 1_c_size_t, int(len(chunk), c_size_t), stream))
+            if (taken == 0) exit
+            if (length + taken > len(bytes)) call double_room(bytes)
+            bytes(length + 1:length + taken) = chunk(:taken)
+            length = length + taken
+            if (length > most) exit
+        end do
+        if (c_ferror(stream) /= 0) problem = 'cannot be read'
+        if (length > most) problem = 'is too large'
+        if (c_fclose(stream) /= 0) problem = 'cannot be read'
+        bytes = bytes(:length)
+    end subroutine read_bytes
+
+    pure subroutine double_room(bytes)
+        character(len=:), allocatable, intent(inout) :: bytes
+        character(len=:), allocatable :: larger
+
+        allocate (character(len=2 * len(bytes)) :: larger)
+        larger(:len(bytes)) = bytes
+        call move_alloc(larger, bytes)
+    end subroutine double_room
+
+    !> The operating system's reason, which Fortran tells and C keeps in a macro.
+    function why_not_opened(name) result(problem)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable :: problem
+        character(len=256) :: message
+        integer :: unit, status
+
+        message = 'cannot be opened'
+        open (newunit=unit, file=name, status='old', action='read', iostat=status, iomsg=message)
+        if (status == 0) close (unit)
+        problem = trim(message)
+    end function why_not_opened
+
+    !> Takes a byte-order mark off, turns UTF-16 into UTF-8, and ends each line by a line feed. A
+    !> character 0 belongs to no text: `problem` tells its line.
+    pure subroutine plain_text(bytes, text, problem)
+        character(len=*), intent(in) :: bytes
+        character(len=:), allocatable, intent(out) :: text
+        character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
+        character(len=12) :: place
+        character(len=1) :: this, previous
+        integer :: line, n, i
+
+        problem = ''
+        if (index(bytes, little_endian_mark) == 1) then
+            call decode_utf16(bytes(3:), 1, text)
+        else if (index(bytes, big_endian_mark) == 1) then
+            call decode_utf16(bytes(3:), 2, text)
+        else if (index(bytes, utf8_mark) == 1) then
+            text = bytes(4:)
+        else
+            text = bytes
+        end if
+
+        n = 0
+        line = 1
+        previous = ' '
+        do i = 1, len(text)
+            this = text(i:i)
+            if (this == achar(0)) then
+                write (place, '(i0)') line
+                problem = 'line ' // trim(place) // ': holds a character 0, which no text does'
+                exit
+            end if
+            if (this /= line_feed .or. previous /= carriage_return) then
+                n = n + 1
+                text(n:n) = this
+                if (this == carriage_return) text(n:n) = line_feed
+                if (text(n:n) == line_feed) line = line + 1
+            end if
+            previous = this
+        end do
+        text = text(:n)
+    end subroutine plain_text
+
+    !> Turns UTF-16 into UTF-8. What is no character becomes U+FFFD.
+    pure subroutine decode_utf16(bytes, low, text)
+        character(len=*), intent(in) :: bytes
+        integer, intent(in) :: low   !! place in each pair of its less significant byte, 1 or 2
+        character(len=:), allocatable, intent(out) :: text
+        integer, parameter :: no_character = int(z'FFFD')
+        integer :: code, second, n, i
+
+        allocate (character(len=3 * (len(bytes) / 2)) :: text)   ! no pair makes more than 3 bytes
+        n = 0
+        i = 1
+        do while (i < len(bytes))
+            code = unit_at(i)
+            i = i + 2
+            if (code >= int(z'D800') .and. code < int(z'E000')) then
+                second = 0
+                if (code < int(z'DC00') .and. i < len(bytes)) second = unit_at(i)
+                if (second >= int(z'DC00') .and. second < int(z'E000')) then
+                    code = int(z'10000') + 1024 * (code - int(z'D800')) + second - int(z'DC00')
+                    i = i + 2
+                else
+                    code = no_character
+                end if
+            end if
+            call append_utf8(code, text, n)
+        end do
+        text = text(:n)
+
+    contains
+
+        pure integer function unit_at(place)
+            integer, intent(in) :: place
+
+            unit_at = 256 * iachar(bytes(place + 2 - low:place + 2 - low)) &
+                + iachar(bytes(place + low - 1:place + low - 1))
+        end function unit_at
+
+    end subroutine decode_utf16
+
+    pure subroutine append_utf8(code, text, n)
+        integer, intent(in) :: code                !! of a character, 0 to 1114111
+        character(len=:), allocatable, intent(inout) :: text
+        integer, intent(inout) :: n                !! bytes so far
+
+        if (code < 128) then
+            text(n + 1:n + 1) = char(code)
+            n = n + 1
+        else if (code < 2048) then
+            text(n + 1:n + 2) = char(192 + code / 64) // char(128 + mod(code, 64))
+            n = n + 2
+        else if (code < 65536) then
+            text(n + 1:n + 3) = char(224 + code / 4096) // char(128 + mod(code / 64, 64)) &
+                // char(128 + mod(code, 64))
+            n = n + 3
+        else
+            text(n + 1:n + 4) = char(240 + code / 262144) // char(128 + mod(code / 4096, 64)) &
+                // char(128 + mod(code / 64, 64)) // char(128 + mod(code, 64))
+            n = n + 4
+        end if
+    end subroutine append_utf8
+
+end module whole_file
