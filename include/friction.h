@@ -24,7 +24,8 @@ enum friction_status {
     FRICTION_BAD_NORMAL = -7,      /* the normal is not a unit vector */
     FRICTION_NULL_POINTER = -8,    /* a pointer argument is NULL */
     FRICTION_ZERO_TIME_INCREMENT = -9,  /* the law depends on the slip rate and needs dtime > 0 */
-    FRICTION_BAD_AXIS = -10        /* orthotropic friction where the axes of the interface are unknown */
+    FRICTION_BAD_AXIS = -10,       /* orthotropic friction where the axes of the interface are unknown */
+    FRICTION_NO_RATE = -11         /* slip starts with a jump, and has no rate */
 };
 
 /* Friction update of one contact point.
@@ -69,6 +70,16 @@ int friction_update_points(int64_t n, int ndir, const double *du, double dtime, 
  * The others as in friction_update. Returns a friction_status. */
 int friction_tangential(int ndir, const double *du, double pressure, double dtime, int nprops, const double *props,
                         int nstatv, double *statev, double *tau, double *dtau_ddu, double *dtau_dp);
+
+/* Continuous time: rates of the state of one contact point for a relative velocity, to which friction_update tends as
+ * dtime tends to zero (docs/theory.md, section 10).
+ *   ndir      components of velocity: 2 or 3
+ *   velocity  relative velocity, ndir numbers [L/T]
+ *   statev    state, nstatv numbers, 8 or more; not changed
+ *   rates     rates of statev[1] to statev[7]; rates[0] = 0; 8 numbers, out
+ * The others as in friction_update. Returns a friction_status. */
+int friction_rates(int ndir, const double *velocity, int nprops, const double *props, int nstatv, const double *statev,
+                   double *rates);
 
 /* What a status says, in one line; the text is constant and not to be freed. */
 const char *friction_message(int status);

@@ -7,6 +7,7 @@ submodule(friction_mod) friction_advance
     use friction_axes, only : contact_axes, is_unit_vector, turn_axes
     use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
         point_open, point_slip, point_stick, point_virgin
+    use friction_continuous, only : contact_rates, point_rates
     use friction_law, only : law
     use friction_law_choice, only : choose_law, first_own_prop, law_storage, orthotropy_place, &
         prop_alpha_n, prop_alpha_t, prop_law, whole_number
@@ -136,6 +137,45 @@ contains
         dtau_ddu = contact_tangent(2:n + 1, 2:n + 1)
         dtau_dp = contact_tangent(2:n + 1, 1)
     end procedure friction_tangential
+
+    module procedure friction_rates
+        type(law_storage), target :: storage
+        class(law), pointer :: surface
+        type(orthotropy) :: plane
+        type(contact_point) :: point
+        type(point_rates) :: by_time
+        real(wp) :: v(3)
+        logical :: jumps
+        integer :: n
+
+        n = size(velocity)
+        status = friction_bad_size
+        if (n < 2 .or. n > 3 .or. size(props) < first_own_prop .or. size(statev) < statev_size &
+            .or. size(rates) < statev_size) return
+        status = friction_bad_increment
+        v = 0.0_wp
+        v(1:n) = velocity
+        if (.not. all_usable(3, v)) return
+        status = friction_bad_property
+        if (.not. all_usable(size(props), props)) return
+        if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
+        call choose_law(size(props), props, storage, surface, plane, status)
+        if (status < 0) return
+        call unpack_state(surface, n, statev, point, status)
+        if (status < 0) return
+        call contact_rates(surface, contact_springs(normal=props(prop_alpha_n), &
+            tangential=props(prop_alpha_t)), plane, v, point, by_time, jumps)
+        status = friction_no_rate
+        if (jumps) return
+        status = friction_ok
+        rates(statev_status) = 0.0_wp
+        rates(statev_u_n) = by_time%u_n
+        rates(statev_u_et:statev_u_et + 1) = by_time%u_et
+        rates(statev_mu) = by_time%inner%mu
+        rates(statev_r) = by_time%inner%r
+        rates(statev_slip) = by_time%slip
+        rates(statev_dissipation) = by_time%dissipation
+    end procedure friction_rates
 
     !> Validates the numbers, chooses the law, and updates.
     pure subroutine advance(motion, sizes, props, statev, traction, tangent, status)

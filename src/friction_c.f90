@@ -4,13 +4,13 @@ module friction_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_int64_t, c_loc, c_null_char, c_ptr
     use friction_mod, only : array_sizes, friction_bad_size, friction_null_pointer, friction_ok, &
-        friction_tangential, friction_version, update_arrays, update_arrays_batch, &
-        update_arrays_points
+        friction_rates, friction_tangential, friction_version, statev_size, update_arrays, &
+        update_arrays_batch, update_arrays_points
     use friction_status, only : first_message, last_message, message_length, message_place, messages
     implicit none
     private
 
-    public :: c_message, c_tangential, c_update, c_update_batch, c_update_points, c_version
+    public :: c_message, c_rates, c_tangential, c_update, c_update_batch, c_update_points, c_version
 
     ! C is handed the address of a text, so the constants need a place in memory. Nothing ever
     ! writes to them.
@@ -85,6 +85,31 @@ contains
         call friction_tangential(du_, pressure, dtime, props_, statev_, tau_, dtau_ddu_, dtau_dp_, &
             status)
     end function c_tangential
+
+    !> `friction_rates` of include/friction.h.
+    function c_rates(ndir, velocity, nprops, props, nstatv, statev, rates) result(status) &
+        bind(C, name='friction_rates')
+        integer(c_int), value, intent(in) :: ndir      !! components of velocity: 2 or 3
+        type(c_ptr), value, intent(in) :: velocity     !! ndir numbers [L/T]
+        integer(c_int), value, intent(in) :: nprops    !! number of material constants
+        type(c_ptr), value, intent(in) :: props        !! nprops numbers
+        integer(c_int), value, intent(in) :: nstatv    !! number of state variables
+        type(c_ptr), value, intent(in) :: statev       !! nstatv numbers
+        type(c_ptr), value, intent(in) :: rates        !! statev_size numbers, out
+        integer(c_int) :: status
+        real(c_double), pointer :: velocity_(:), props_(:), statev_(:), rates_(:)
+
+        status = friction_bad_size
+        if (min(ndir, nprops, nstatv) < 0) return
+        status = friction_null_pointer
+        if (.not. (c_associated(velocity) .and. c_associated(props) .and. c_associated(statev) &
+            .and. c_associated(rates))) return
+        call c_f_pointer(velocity, velocity_, [ndir])
+        call c_f_pointer(props, props_, [nprops])
+        call c_f_pointer(statev, statev_, [nstatv])
+        call c_f_pointer(rates, rates_, [statev_size])
+        call friction_rates(velocity_, props_, statev_, rates_, status)
+    end function c_rates
 
     !> `friction_update_batch` of include/friction.h. The function's value is the worst status of
     !> all points.

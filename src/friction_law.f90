@@ -10,7 +10,7 @@ module friction_law
     implicit none
     private
 
-    public :: law, law_state, sliding
+    public :: below, law, law_state, law_traits, load_rates, sliding
 
     !> Internal variables of a law at one contact point.
     type :: law_state
@@ -27,6 +27,32 @@ module friction_law
         real(wp) :: d_pressure   !! d(resistance)/d(pressure) [-]
     end type sliding
 
+    !> A loaded contact in continuous time: what it carries, and how that is about to change.
+    type :: load_rates
+        real(wp) :: traction        !! tangential traction carried, >= 0 [F/L^2]
+        real(wp) :: loading         !! its rate if nothing slipped [F/L^2/T]
+        real(wp) :: stiffness       !! what a unit of slip takes from it, > 0 [F/L^3]
+        real(wp) :: pressure        !! contact pressure; 0 while open [F/L^2]
+        real(wp) :: pressure_rate   !! [F/L^2/T]
+        logical :: sliding          !! taken to slide: a rate < 0 tells that it does not
+    end type load_rates
+
+    !> How slip starts in continuous time.
+    integer, parameter, public :: onset_gradual = 1  !! the slip rate grows from zero with the load
+    integer, parameter, public :: onset_yields = 2   !! from the strength on, it is what holds that
+    integer, parameter, public :: onset_drops = 3    !! with a fall of the resistance, at once
+
+    !> What the rates of a law are like, for those who integrate them.
+    type :: law_traits
+        integer :: onset = onset_yields
+        logical :: stiff = .false.       !! slip rates go through decades
+        integer :: memory = 0            !! what evolves: 0 nothing, 1 `mu`, 2 `r` of its state
+        logical :: logarithmic = .false. !! which goes through decades, too, always positive
+        real(wp) :: weight = 0.0_wp      !! change of the friction coefficient with a unit of it, or
+                                         !! of its logarithm [-]
+        real(wp) :: kink = huge(1.0_wp)  !! where the law changes its form
+    end type law_traits
+
     type, abstract :: law
         !> Does the law follow the path within an increment? Then an increment that unloads before
         !> it loads again slides from the least share of the strength on its way: `r` at the start
@@ -39,6 +65,10 @@ module friction_law
         procedure(admits_interface), deferred :: admits
         procedure(rest_interface), deferred :: rest
         procedure(slide_interface), deferred :: slide
+        procedure(slip_rate_interface), deferred :: slip_rate
+        procedure(state_rates_interface), deferred :: state_rates
+        procedure :: resistance_at => resistance_at_any_rate
+        procedure :: traits => simple_traits
         procedure :: weakening => never_weakens
         procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
@@ -94,6 +124,29 @@ module friction_law
             real(wp), intent(out) :: d_slip         !! d(resistance)/d(slip) [F/L^3]
             real(wp), intent(out) :: d_pressure     !! d(resistance)/d(pressure) [-]
         end subroutine slide_interface
+
+        !> Slip rate in continuous time: what keeps the traction at the strength, 0 below it.
+        pure subroutine slip_rate_interface(self, state, load, rate, jumps)
+            import :: law, law_state, load_rates, wp
+            implicit none
+            class(law), intent(in) :: self
+            type(law_state), intent(in) :: state
+            type(load_rates), intent(in) :: load   !! pressure >= 0
+            real(wp), intent(out) :: rate          !! >= 0, unless taken to slide [L/T]
+            logical, intent(out) :: jumps   !! the strength falls faster than the spring unloads: no
+                                            !! rate is fast enough
+        end subroutine slip_rate_interface
+
+        !> Rates of the internal variables in continuous time.
+        pure function state_rates_interface(self, state, load, slip_rate) result(rates)
+            import :: law, law_state, load_rates, wp
+            implicit none
+            class(law), intent(in) :: self
+            type(law_state), intent(in) :: state
+            type(load_rates), intent(in) :: load     !! pressure >= 0
+            real(wp), intent(in) :: slip_rate        !! >= 0 [L/T]
+            type(law_state) :: rates                 !! per unit of time
+        end function state_rates_interface
     end interface
 
 contains
@@ -137,6 +190,36 @@ contains
 
         solved = .false.
     end subroutine not_solved
+
+    !> Resistance in continuous time at a slip rate. A law that depends on the rate overrides this.
+    pure function resistance_at_any_rate(self, state, rate, pressure) result(resistance)
+        class(law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate         !! slip rate, >= 0 [L/T]
+        real(wp), intent(in) :: pressure     !! contact pressure, >= 0 [F/L^2]
+        real(wp) :: resistance               !! [F/L^2]
+        type(law_state) :: new
+
+        call self%rest(0.0_wp, pressure, 0.0_wp, state, new, resistance)
+    end function resistance_at_any_rate
+
+    !> A law that remembers something, or that starts to slip in another way, overrides this.
+    pure function simple_traits(self) result(traits)
+        class(law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = law_traits()
+    end function simple_traits
+
+    !> Does a traction stay below a strength by more than round-off?
+    pure function below(load, strength) result(sticks)
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: strength   !! [F/L^2]
+        logical :: sticks
+        real(wp), parameter :: round_off = 64.0_wp * epsilon(1.0_wp)
+
+        sticks = .not. load%sliding .and. load%traction < strength * (1.0_wp - round_off)
+    end function below
 
     !> d(resistance)/d(r at the start of sliding), for a law that follows the path.
     pure function no_start_rate(self, pressure, start, state) result(rate)

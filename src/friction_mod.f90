@@ -17,17 +17,24 @@ module friction_mod
     use friction_status, only : friction_bad_axis, friction_bad_increment, friction_bad_law, &
         friction_bad_normal, friction_bad_property, friction_bad_size, friction_bad_state, &
         friction_message, friction_no_convergence, friction_null_pointer, friction_ok, &
-        friction_snap_back, friction_zero_time_increment
+        friction_no_rate, friction_snap_back, friction_zero_time_increment
+    use friction_surface, only : law_state, law_traits, load_rates, onset_drops, onset_gradual, &
+        onset_yields, read_surface, sliding_surface
     implicit none
     private
 
     public :: friction_update, friction_update_frame, friction_tangential, friction_update_batch, &
-        friction_update_points, friction_is_orthotropic, friction_message, friction_version
+        friction_update_points, friction_rates, friction_is_orthotropic, friction_message, &
+        friction_version
     ! for the C interface
     public :: array_sizes, update_arrays, update_arrays_batch, update_arrays_points
     public :: friction_bad_axis, friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
-        friction_null_pointer, friction_ok, friction_snap_back, friction_zero_time_increment
+        friction_no_rate, friction_null_pointer, friction_ok, friction_snap_back, &
+        friction_zero_time_increment
+    ! a law for those who integrate its rates themselves
+    public :: law_state, law_traits, load_rates, read_surface, sliding_surface
+    public :: onset_drops, onset_gradual, onset_yields
     public :: law_coulomb, law_rate_state, law_slip_weakening, law_static_kinetic, law_subloading
     public :: scheme_backward_euler, scheme_exact_rate
     public :: u_cotangent, u_logarithm, u_reciprocal
@@ -144,6 +151,22 @@ module friction_mod
             real(wp), intent(inout) :: dtau_dp(:)      !! d(tau)/d(pressure); size of du [-]
             integer, intent(out) :: status   !! a named code; `friction_message` gives its text
         end subroutine friction_tangential
+
+        !> Continuous time: the rates of a contact point's state for a relative velocity
+        !> (docs/theory.md, section 10), to which the update tends as its increment of time tends to
+        !> zero.
+        pure module subroutine friction_rates(velocity, props, statev, rates, status)
+            implicit none
+            real(wp), intent(in) :: velocity(:)   !! relative: normal, tangential 1[, 2]; size 2 or
+                                                  !! 3, finite [L/T]
+            real(wp), intent(in) :: props(:)      !! material constants, as in `friction_update`
+            real(wp), intent(in) :: statev(:)     !! state; size 8 or more; all zero = virgin
+            real(wp), intent(inout) :: rates(:)   !! rates of statev(2) to statev(8), per unit of
+                                                  !! time; rates(1) = 0; size 8 or more, of which 8
+                                                  !! are set
+            integer, intent(out) :: status        !! a named code; `friction_no_rate` where slip
+                                                  !! starts with a jump
+        end subroutine friction_rates
 
         !> Friction update of many contact points, all with the same constants and the same
         !> increment of time (docs/performance.md). Arrays are component-major: component j of point

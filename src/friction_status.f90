@@ -19,9 +19,10 @@ module friction_status
     integer, parameter, public :: friction_null_pointer = -8    !! a pointer from C is NULL
     integer, parameter, public :: friction_zero_time_increment = -9   !! the law needs dtime > 0
     integer, parameter, public :: friction_bad_axis = -10   !! orthotropic friction without an axis
+    integer, parameter, public :: friction_no_rate = -11        !! slip starts with a jump
 
     ! Places of the texts below: one a code, and one for what is no code.
-    integer, parameter, public :: first_message = friction_bad_axis
+    integer, parameter, public :: first_message = friction_no_rate
     integer, parameter :: unknown = friction_snap_back + 1
     integer, parameter, public :: last_message = unknown
     integer, parameter, public :: message_length = 96
@@ -30,6 +31,8 @@ module friction_status
     !> exist.
     character(len=message_length), parameter, public :: messages(first_message:last_message) = &
         [character(len=message_length) :: &
+        'no rate is fast enough: friction falls faster than the contact spring unloads' &
+        // c_null_char, &
         'orthotropic friction needs an axis that is not along the normal' // c_null_char, &
         'the law depends on the slip rate: a closed contact under shear needs dtime > 0' &
         // c_null_char, &

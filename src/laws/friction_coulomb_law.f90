@@ -5,7 +5,7 @@
 !> Nothing evolves; the internal variable stays 0.
 module friction_coulomb_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state
+    use friction_law, only : below, law, law_state, load_rates
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -19,6 +19,8 @@ module friction_coulomb_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
     end type coulomb_law
 
 contains
@@ -77,5 +79,29 @@ contains
         d_slip = 0.0_wp
         d_pressure = self%mu
     end subroutine slide
+
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(coulomb_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+
+        jumps = .false.
+        rate = 0.0_wp
+        if (below(load, self%mu * load%pressure)) return
+        rate = (load%loading - self%mu * load%pressure_rate) / load%stiffness
+        if (.not. load%sliding) rate = max(0.0_wp, rate)
+    end subroutine slip_rate
+
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(coulomb_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+
+        rates = law_state(mu=0.0_wp, r=0.0_wp)
+    end function state_rates
 
 end module friction_coulomb_law

@@ -17,7 +17,7 @@
 !> taken as proportional to the slip, so that it starts from zero and every number stays in range.
 module friction_rate_state_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -39,6 +39,10 @@ module friction_rate_state_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
+        procedure :: resistance_at
+        procedure :: traits
         procedure :: weakening
         procedure :: needs_time
         procedure :: solve
@@ -279,6 +283,67 @@ contains
         end if
         slip = exp(min(y - direct_exponent(self, 1.0_wp, dt, log(theta)), log(most)))
     end function creep
+
+    !> The slip rate that the traction asks for, 2 v0 sinh(tau/(a p)) exp(-(f0 + b ln(v0
+    !> theta/d_c))/a), short of what would overflow.
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+        real(wp), parameter :: ln_most = 200.0_wp
+        real(wp) :: x, psi
+
+        jumps = .false.
+        rate = 0.0_wp
+        if (.not. load%pressure > 0.0_wp) return
+        psi = (self%f0 + self%b * log(self%v0 * state%r / self%d_c)) / self%a
+        x = min(load%traction, self%a * load%pressure * (psi + ln_most)) &
+            / (self%a * load%pressure)
+        if (x > 1.0_wp) then
+            rate = self%v0 * (exp(x - psi) - exp(-x - psi))
+        else
+            rate = 2.0_wp * self%v0 * sinh(x) * exp(min(-psi, ln_most))
+        end if
+    end subroutine slip_rate
+
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+        real(wp) :: x
+
+        x = slip_rate * state%r / self%d_c
+        rates = law_state(mu=0.0_wp, r=1.0_wp - x)
+        if (self%evolution == slipping) then
+            rates%r = 0.0_wp
+            if (x > 0.0_wp) rates%r = -x * log(x)
+        end if
+        if (load%pressure > 0.0_wp) rates%mu = (load%loading - load%stiffness * slip_rate &
+            - load%traction / load%pressure * load%pressure_rate) / load%pressure
+    end function state_rates
+
+    pure function resistance_at(self, state, rate, pressure) result(resistance)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate, pressure
+        real(wp) :: resistance
+
+        resistance = 0.0_wp
+        if (rate > 0.0_wp) resistance = self%a * pressure * asinh_exp(direct_exponent(self, rate, &
+            1.0_wp, log(state%r)))
+    end function resistance_at
+
+    pure function traits(self)
+        class(rate_state_law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = law_traits(onset=onset_gradual, stiff=.true., memory=2, logarithmic=.true., &
+            weight=self%b)
+    end function traits
 
     !> X of the law.
     pure function direct_exponent(self, slip, dt, ln_theta) result(x)

@@ -7,7 +7,7 @@
 !> holds, the traction depends neither on the slip nor on the pressure.
 module friction_shear_cap
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : below, law, law_state, law_traits, load_rates, sliding
     implicit none
     private
 
@@ -21,6 +21,10 @@ module friction_shear_cap
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
+        procedure :: resistance_at
+        procedure :: traits
         procedure :: weakening
         procedure :: needs_time
         procedure :: solve
@@ -77,6 +81,58 @@ contains
 
         bound = max(0.0_wp, self%inner%weakening(from, to, pressure, dt, old))
     end function weakening
+
+    !> At the cap, the slip that keeps the traction there, or more where the law itself asks for it.
+    !> Where its own strength is higher, the law has no say unless that falls with the slip rate.
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(capped_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+        type(law_state) :: new
+        real(wp) :: own, strength
+
+        if (below(load, self%tau_max)) then
+            call self%inner%slip_rate(state, load, rate, jumps)
+            return
+        end if
+        jumps = .false.
+        rate = max(0.0_wp, load%loading) / load%stiffness
+        call self%inner%rest(load%traction, load%pressure, 0.0_wp, state, new, strength)
+        if (below(load, strength)) then
+            jumps = self%inner%resistance_at(state, rate, load%pressure) < self%tau_max
+        else
+            call self%inner%slip_rate(state, load, own, jumps)
+            rate = max(rate, own)
+        end if
+    end subroutine slip_rate
+
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(capped_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+
+        rates = self%inner%state_rates(state, load, slip_rate)
+    end function state_rates
+
+    pure function resistance_at(self, state, rate, pressure) result(resistance)
+        class(capped_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate, pressure
+        real(wp) :: resistance
+
+        resistance = min(self%inner%resistance_at(state, rate, pressure), self%tau_max)
+    end function resistance_at
+
+    pure function traits(self)
+        class(capped_law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = self%inner%traits()
+    end function traits
 
     pure function needs_time(self) result(needs)
         class(capped_law), intent(in) :: self

@@ -8,7 +8,7 @@
 !> mapping is concave in the slip and positive at 0: it has one root, however steep the fall.
 module friction_slip_weakening_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : below, law, law_state, law_traits, load_rates, sliding
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -24,6 +24,9 @@ module friction_slip_weakening_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
+        procedure :: traits
         procedure :: weakening
         procedure :: solve
     end type slip_weakening_law
@@ -116,6 +119,43 @@ contains
             answer%d_slip, answer%d_pressure)
         solved = .true.
     end subroutine solve
+
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(slip_weakening_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+        type(law_state) :: now
+        real(wp) :: slope
+
+        jumps = .false.
+        rate = 0.0_wp
+        now = state_after(self, state%r)
+        if (below(load, now%mu * load%pressure)) return
+        rate = load%loading - now%mu * load%pressure_rate
+        if (.not. load%sliding) rate = max(0.0_wp, rate)
+        slope = load%stiffness - fall(self, state%r, load%pressure)
+        jumps = rate > 0.0_wp .and. slope <= 0.0_wp
+        if (slope > 0.0_wp) rate = rate / slope
+    end subroutine slip_rate
+
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(slip_weakening_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+
+        rates = law_state(mu=-fall(self, state%r, 1.0_wp) * slip_rate, r=slip_rate)
+    end function state_rates
+
+    pure function traits(self)
+        class(slip_weakening_law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = law_traits(memory=2, weight=(self%mu_s - self%mu_k) / self%d_c, kink=self%d_c)
+    end function traits
 
     pure function state_after(self, d) result(state)
         class(slip_weakening_law), intent(in) :: self

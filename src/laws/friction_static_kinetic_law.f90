@@ -7,7 +7,8 @@
 !> resistance falls.
 module friction_static_kinetic_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : below, law, law_state, law_traits, load_rates, onset_drops, &
+        onset_yields, sliding
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -23,6 +24,10 @@ module friction_static_kinetic_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
+        procedure :: resistance_at
+        procedure :: traits
         procedure :: weakening
         procedure :: needs_time
         procedure :: solve
@@ -135,6 +140,50 @@ contains
             answer%slip = answer%slip + step
         end do
     end subroutine solve
+
+    !> The resistance falls as soon as the surface slides, and with it the traction on the spring,
+    !> at once: where the law weakens at all, slip starts with a jump.
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+
+        jumps = .false.
+        rate = 0.0_wp
+        if (below(load, self%mu_s * load%pressure)) return
+        rate = (load%loading - self%mu_s * load%pressure_rate) / load%stiffness
+        if (.not. load%sliding) rate = max(0.0_wp, rate)
+        jumps = rate > 0.0_wp .and. self%d_c * (self%mu_s - self%mu_k) * load%pressure > 0.0_wp
+    end subroutine slip_rate
+
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+
+        rates = law_state(mu=0.0_wp, r=0.0_wp)
+    end function state_rates
+
+    pure function resistance_at(self, state, rate, pressure) result(resistance)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate, pressure
+        real(wp) :: resistance
+
+        resistance = (self%mu_k + (self%mu_s - self%mu_k) * exp(-self%d_c * rate)) * pressure
+    end function resistance_at
+
+    pure function traits(self)
+        class(static_kinetic_law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = law_traits(onset=onset_yields)
+        if (self%d_c * (self%mu_s - self%mu_k) > 0.0_wp) traits%onset = onset_drops
+    end function traits
 
     !> d_c/dt, short of what would overflow: so fast a decay is a jump.
     pure function decay_per_slip(self, dt) result(rate)

@@ -31,6 +31,7 @@ module friction_subloading_general_law
         procedure :: slide
         procedure :: weakening
         procedure :: solve
+        procedure :: u_of
     end type subloading_general_law
 
     real(wp), parameter :: half_pi = 1.57079632679489661923132169163975144_wp
@@ -104,6 +105,18 @@ contains
         end do
         solved = .false.
     end subroutine solve
+
+    pure function u_of(self, r) result(u)
+        class(subloading_general_law), intent(in) :: self
+        real(wp), intent(in) :: r
+        real(wp) :: u
+
+        if (self%u_of_r == u_reciprocal) then
+            u = (1.0_wp - r) / r
+        else
+            u = sin(half_pi * (1.0_wp - r)) / sin(half_pi * r)
+        end if
+    end function u_of
 
     !> The slip for constant mu by the reciprocal, where R solves a quadratic equation; zero if it
     !> drowns in round-off.

@@ -13,7 +13,7 @@
 !> and `e = 1 - r`.
 module friction_subloading_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -32,6 +32,10 @@ module friction_subloading_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: slip_rate
+        procedure :: state_rates
+        procedure :: traits
+        procedure :: u_of
         procedure :: weakening
         procedure :: solve
     end type subloading_law
@@ -295,6 +299,78 @@ contains
             if (abs(dr) <= small_newton_step * min(r, e)) exit
         end do
     end subroutine similarity_ratio
+
+    !> Consistency: the traction stays on the subloading surface, R mu p.
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(subloading_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(out) :: rate
+        logical, intent(out) :: jumps
+        real(wp) :: full, slope
+
+        jumps = .false.
+        rate = 0.0_wp
+        full = state%mu * load%pressure
+        slope = load%stiffness
+        if (full > 0.0_wp) then
+            if (.not. (state%r > 0.0_wp .and. load%traction > 0.0_wp)) return
+            slope = slope + full * self%m * self%u_of(state%r) - state%r * load%pressure &
+                * self%kappa * (state%mu - self%mu_k)
+        end if
+        rate = load%loading - state%r * strength_rate(self, state, load)
+        if (.not. load%sliding) rate = max(0.0_wp, rate)
+        jumps = rate > 0.0_wp .and. slope <= 0.0_wp
+        if (slope > 0.0_wp) rate = rate / slope
+    end subroutine slip_rate
+
+    !> While nothing slips R is the traction's share of mu p.
+    pure function state_rates(self, state, load, slip_rate) result(rates)
+        class(subloading_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp), intent(in) :: slip_rate
+        type(law_state) :: rates
+        real(wp) :: full
+
+        full = state%mu * load%pressure
+        rates%mu = self%xi * (self%mu_s - state%mu) - self%kappa * (state%mu - self%mu_k) &
+            * slip_rate
+        rates%r = 0.0_wp
+        if (slip_rate > 0.0_wp) then
+            if (state%r > 0.0_wp) rates%r = self%m * self%u_of(state%r) * slip_rate
+        else if (full > 0.0_wp) then
+            rates%r = (load%loading - load%traction / full * strength_rate(self, state, load)) &
+                / full
+        end if
+    end function state_rates
+
+    !> R follows from the traction, unless a cap holds that.
+    pure function traits(self)
+        class(subloading_law), intent(in) :: self
+        type(law_traits) :: traits
+
+        traits = law_traits(onset=onset_gradual, memory=1, weight=1.0_wp)
+    end function traits
+
+    !> U(R), which tells how fast sliding becomes full.
+    pure function u_of(self, r) result(u)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: r   !! 0 < R <= 1 [-]
+        real(wp) :: u               !! >= 0 [-]
+
+        u = -log(r)
+    end function u_of
+
+    !> Rate of mu p where nothing slips.
+    pure function strength_rate(self, state, load) result(rate)
+        class(subloading_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load
+        real(wp) :: rate   !! [F/L^2/T]
+
+        rate = self%xi * (self%mu_s - state%mu) * load%pressure + state%mu * load%pressure_rate
+    end function strength_rate
 
     !> The friction coefficient's share that slip can take away, times w: `c` of section 3.
     pure function weakening_reserve(self, dt, old) result(c)

@@ -110,6 +110,27 @@ static void points_are_in_c_order(void)
           == FRICTION_NULL_POINTER);
 }
 
+static void rates_are_what_the_update_tends_to(void)
+{
+    const double press[3] = {-0.01, 0.002, 0}, v[3] = {0, 1, 0}, dt = 1e-8;
+    double statev[8] = {0}, rates[8], after[8], traction[3], tangent[9], du[3];
+    int j;
+
+    friction_update(3, press, 0.1, 9, props, 8, statev, traction, tangent);
+    CHECK(friction_rates(3, v, 9, props, 8, statev, rates) == FRICTION_OK);
+    for (j = 0; j < 8; j++)
+        after[j] = statev[j];
+    for (j = 0; j < 3; j++)
+        du[j] = v[j] * dt;
+    friction_update(3, du, dt, 9, props, 8, after, traction, tangent);
+    CHECK(rates[0] == 0 && rates[6] > 0);
+    for (j = 1; j < 8; j++)
+        CHECK(fabs((after[j] - statev[j]) / dt - rates[j]) < 1e-3 * (1 + fabs(rates[j])));
+    CHECK(friction_rates(3, NULL, 9, props, 8, statev, rates) == FRICTION_NULL_POINTER);
+    CHECK(friction_rates(3, v, 9, props, 8, statev, NULL) == FRICTION_NULL_POINTER);
+    CHECK(friction_rates(4, v, 9, props, 8, statev, rates) == FRICTION_BAD_SIZE);
+}
+
 static void bad_calls_are_codes_and_touch_nothing(void)
 {
     double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
@@ -153,6 +174,7 @@ int main(void)
     tangential_is_the_same_with_the_pressure_handed_in();
     a_batch_is_component_major();
     points_are_in_c_order();
+    rates_are_what_the_update_tends_to();
     bad_calls_are_codes_and_touch_nothing();
     texts_are_constant_c_strings();
     printf("%d failures\n", failures);
