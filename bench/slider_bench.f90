@@ -3,10 +3,11 @@
 program slider_bench
     use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
     use explicit_slider, only : explicit_run, solve_explicitly
-    use fixed_steps, only : last_peak, problem
-    use recorder, only : csv_recorder
+    use reference_problem, only : last_peak, problem
+    use run_observer, only : observer_slot
+    use run_outcome, only : outcome
     use run_settings, only : settings
-    use simulation, only : outcome, simulate
+    use simulation, only : simulate, simulation_run, start_run
     use stopwatch, only : timer
     !$ use omp_lib, only : omp_get_num_procs, omp_set_num_threads
     implicit none
@@ -159,7 +160,8 @@ contains
         real(dp), intent(out) :: iterations     !! of Newton's method a step
         real(dp), parameter :: dt = 1.0e-3_dp
         type(settings) :: run
-        type(csv_recorder) :: nowhere
+        type(simulation_run) :: live
+        type(observer_slot) :: nobody(0)
         type(outcome) :: result
         real(dp) :: begun, ended
 
@@ -172,7 +174,8 @@ contains
         run%initial%mu = 0.4_dp
         run%initial%r = 0.9_dp
         call cpu_time(begun)
-        call simulate(run, nowhere, .false., result)
+        call start_run(run, live)
+        call simulate(live, nobody, result)
         call cpu_time(ended)
         seconds = seconds + (ended - begun)
         iterations = real(result%iterations, dp) / max(1, steps)
@@ -198,7 +201,8 @@ contains
         real(dp), intent(in) :: explicit_seconds   !! [s]
         real(dp), intent(in) :: allowed            !! error of event times [T]
         real(dp), intent(inout) :: best
-        type(csv_recorder) :: nowhere   ! not started: drops what it is given
+        type(simulation_run) :: live
+        type(observer_slot) :: nobody(0)
         type(outcome) :: result
         real(dp) :: begun, ended, seconds, error
         integer :: i
@@ -206,7 +210,8 @@ contains
         seconds = huge(seconds)
         do i = 1, repetitions
             call cpu_time(begun)
-            call simulate(run, nowhere, .false., result)
+            call start_run(run, live)
+            call simulate(live, nobody, result)
             call cpu_time(ended)
             seconds = min(seconds, ended - begun)
             if (seconds > 0.5_dp) exit

@@ -6,7 +6,8 @@ program stickslip
     use point_study, only : check_point, is_point_input, run_point
     use run_settings, only : settings
     use sweep, only : sweep_input
-    use study, only : check_input, exit_bad_input, exit_done, run_input
+    use study, only : check_input, run_input
+    use verb_common, only : exit_bad_input, exit_done
     implicit none
     type(command) :: wanted
     type(settings) :: run

@@ -8,6 +8,7 @@
 !> first block on and one up to the last, that are under way and end together, as one.
 module chain_events
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use archive_file, only : archive
     use friction_mod, only : statev_slip
     use slider_system, only : slider_state
     implicit none
@@ -31,7 +32,7 @@ module chain_events
         type(chain_event), allocatable :: events(:)   !! room for `count` and more
         integer :: count = 0
     contains
-        procedure :: look, give_up
+        procedure :: look, give_up, visit
         procedure, private :: over_seam, hand_over
     end type chain_finder
 
@@ -180,5 +181,29 @@ contains
         event%slip = event%slip + behind%slip
         event%peak_velocity = max(event%peak_velocity, behind%peak_velocity)
     end subroutine absorb
+
+    !> Reads or writes the events under way.
+    subroutine visit(self, file)
+        class(chain_finder), intent(inout) :: self
+        type(archive), intent(inout) :: file
+        integer :: i
+
+        call file%visit(self%count)
+        if (size(self%events) < self%count) then
+            deallocate (self%events)
+            allocate (self%events(self%count))
+        end if
+        do i = 1, self%count
+            associate (event => self%events(i))
+                call file%visit(event%onset)
+                call file%visit(event%end)
+                call file%visit(event%first)
+                call file%visit(event%last)
+                call file%visit(event%slip)
+                call file%visit(event%peak_velocity)
+                call file%visit(event%under_way)
+            end associate
+        end do
+    end subroutine visit
 
 end module chain_events

@@ -1,6 +1,7 @@
 !> What a run has come to.
 module run_outcome
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use archive_file, only : archive
     use slider_system, only : energy_balance
     implicit none
     private
@@ -12,6 +13,8 @@ module run_outcome
         integer :: events = 0, recurrences = 0
         real(dp) :: period = 0.0_dp, force_drop = 0.0_dp   !! sums; see `recurrences` and `events`
         real(dp) :: peak_velocity = 0.0_dp
+    contains
+        procedure :: visit
     end type event_totals
 
     !> What a run has come to.
@@ -29,6 +32,20 @@ module run_outcome
         integer :: cut_events = 0                  !! there, but still under way at the end
         type(energy_balance) :: energy
         type(event_totals), allocatable :: pieces(:)
+        logical :: interrupted = .false.           !! by the user: the run can be resumed
     end type outcome
+
+contains
+
+    subroutine visit(self, file)
+        class(event_totals), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call file%visit(self%events)
+        call file%visit(self%recurrences)
+        call file%visit(self%period)
+        call file%visit(self%force_drop)
+        call file%visit(self%peak_velocity)
+    end subroutine visit
 
 end module run_outcome

@@ -3,6 +3,7 @@
 !> ends.
 module slip_events
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use archive_file, only : archive
     implicit none
     private
 
@@ -15,6 +16,8 @@ module slip_events
         real(dp) :: slip = 0.0_dp       !! accumulated [L]
         real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
         real(dp) :: rate = 0.0_dp       !! of the force [F/T]
+    contains
+        procedure, private :: visit => visit_moment
     end type moment
 
     type :: slip_event
@@ -25,6 +28,8 @@ module slip_events
         real(dp) :: peak_velocity = 0.0_dp    !! [L/T]
         real(dp) :: recurrence = 0.0_dp       !! onset less the onset of the event before [T]
         logical :: first = .true.             !! no event before: no recurrence time
+    contains
+        procedure, private :: visit => visit_event
     end type slip_event
 
     type :: event_finder
@@ -37,7 +42,7 @@ module slip_events
         logical :: any_before = .false.
         real(dp) :: last_onset = 0.0_dp    !! of the event before [T]
     contains
-        procedure :: look
+        procedure :: look, visit
     end type event_finder
 
 contains
@@ -109,5 +114,44 @@ contains
         self%current%slip = now%slip - self%peak%slip
         self%current%peak_velocity = self%fastest
     end subroutine follow_fall
+
+    !> Reads or writes what has to be kept to go on.
+    subroutine visit(self, file)
+        class(event_finder), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call file%visit(self%started)
+        call file%visit(self%falling)
+        call self%peak%visit(file)
+        call self%trough%visit(file)
+        call file%visit(self%fastest)
+        call self%current%visit(file)
+        call file%visit(self%any_before)
+        call file%visit(self%last_onset)
+    end subroutine visit
+
+    subroutine visit_moment(self, file)
+        class(moment), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call file%visit(self%time)
+        call file%visit(self%force)
+        call file%visit(self%slip)
+        call file%visit(self%velocity)
+        call file%visit(self%rate)
+    end subroutine visit_moment
+
+    subroutine visit_event(self, file)
+        class(slip_event), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call file%visit(self%onset)
+        call file%visit(self%duration)
+        call file%visit(self%force_drop)
+        call file%visit(self%slip)
+        call file%visit(self%peak_velocity)
+        call file%visit(self%recurrence)
+        call file%visit(self%first)
+    end subroutine visit_event
 
 end module slip_events

@@ -1,11 +1,13 @@
 !> Reads what a run is told to do: the groups and keys of the input file, their defaults and rules.
 module run_reader
-    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use archive_file, only : mix
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
     use law_facts, only : is_second_order, is_subloading, kinetic_coefficient, shear_cap, &
         static_coefficient, typical_coefficient
     use law_input, only : read_friction
+    use loading_programme, only : programme
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
     implicit none
@@ -51,7 +53,28 @@ contains
             default=60.0_dp)
         call read_fields(file, run)
         call file%refuse_unknown()
+        run%fingerprint = fingerprint_of(file%listing(), run%drive)
     end subroutine read_settings
+
+    !> A number that is another one for any other input, but for when checkpoints are written.
+    pure function fingerprint_of(listing, drive) result(number)
+        character(len=*), intent(in) :: listing   !! of the namelists, a line a key
+        type(programme), intent(in) :: drive      !! files that they name included
+        integer(int64) :: number
+        integer :: start, length, i
+
+        number = 0
+        start = 1
+        do while (start <= len(listing))
+            length = index(listing(start:), new_line('a'))
+            if (index(listing(start:), '&output checkpoint') /= 1) call mix( &
+                [(int(iachar(listing(i:i)), int64), i = start, start + length - 1)], number)
+            start = start + length
+        end do
+        if (.not. allocated(drive%start)) return
+        call mix(transfer([drive%start, drive%velocity, drive%acceleration, drive%normal, &
+            drive%normal_rate], [number]), number)
+    end function fingerprint_of
 
     !> A tolerance that is a part of nothing cannot be met.
     subroutine check_scale(file, run)

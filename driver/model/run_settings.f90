@@ -1,13 +1,13 @@
 !> What a run is told to do. Defaults are those of the input file (docs/driver.md).
 module run_settings
-    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_settings, only : chain
     use loading_programme, only : programme
     use slider_system, only : initial_values
     implicit none
     private
 
-    public :: settings
+    public :: next_row, settings
 
     type :: settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
@@ -32,6 +32,22 @@ module run_settings
         real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
         integer :: fields = 0               !! steps between two rows of a chain's fields; 0: none
         integer :: n_steps = 0              !! follows from t_end and dt
+        integer(int64) :: fingerprint = 0   !! another one for any input with other results
     end type settings
+
+contains
+
+    !> The first multiple of `every` after a time; huge if there is none.
+    pure function next_row(every, time) result(next)
+        real(dp), intent(in) :: every, time   !! [T]
+        real(dp) :: next                      !! [T]
+        real(dp) :: n
+
+        next = huge(next)
+        if (every <= 0.0_dp) return
+        n = anint(time / every)
+        if (every * n <= time) n = n + 1.0_dp
+        next = every * n
+    end function next_row
 
 end module run_settings

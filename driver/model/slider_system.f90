@@ -8,6 +8,7 @@
 module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use archive_file, only : archive
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
         friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, &
         statev_u_n
@@ -24,7 +25,7 @@ module slider_system
     integer, parameter, public :: ends_free_fixed = 4 !! the first to nothing, the last to a wall
     integer, parameter, public :: ends_fixed_free = 5 !! the first to a wall, the last to nothing
 
-    !> What stays.
+    !> What does not change during a run.
     type :: slider
         real(dp) :: mass, stiffness, damping, area   !! [M], [F/L], [F T/L], [L^2]
         real(dp), allocatable :: props(:)            !! constants of the friction routine
@@ -36,7 +37,7 @@ module slider_system
     contains
         procedure :: add_coupling, coupling_energy
         procedure :: account
-        procedure :: take_stock
+        procedure :: take_stock, energy_of
     end type slider
 
     !> How a block starts, if not at rest on a virgin contact with a slack spring.
@@ -51,7 +52,7 @@ module slider_system
         real(dp) :: spring_force = 0.0_dp      !! [F]
     end type initial_values
 
-    !> What moves.
+    !> What changes with time.
     type :: slider_state
         real(dp) :: time = 0.0_dp                !! [T]
         real(dp) :: drive = 0.0_dp               !! position of the drive [L]
@@ -62,6 +63,8 @@ module slider_system
         real(dp), allocatable :: spring(:)       !! force of the drive spring [F]
         real(dp), allocatable :: friction(:)     !! S f_t, positive when it opposes +x [F]
         real(dp), allocatable :: statev(:, :)    !! of the friction routine, one row a block
+    contains
+        procedure :: visit
     end type slider_state
 
     !> Where the work of the drive has gone [F L].
@@ -329,6 +332,24 @@ contains
         call set_accelerations(system, state)
     end subroutine apply_normal_traction
 
+    !> Reads or writes a state; to read, it must be allocated.
+    subroutine visit(self, file)
+        class(slider_state), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call file%visit(self%time)
+        call file%visit(self%drive)
+        call file%visit(self%normal)
+        call file%visit(self%drive_work)
+        call file%visit(self%damped)
+        call file%visit(self%x)
+        call file%visit(self%v)
+        call file%visit(self%a)
+        call file%visit(self%spring)
+        call file%visit(self%friction)
+        call file%visit(self%statev)
+    end subroutine visit
+
     !> Exchanges two states without copying them.
     pure subroutine swap_states(a, b)
         type(slider_state), intent(inout) :: a, b
@@ -400,6 +421,17 @@ contains
         energy%drive_work = state%drive_work
         energy%damped = state%damped
     end subroutine take_stock
+
+    !> Held by the springs, the contact and the motion together.
+    pure function energy_of(self, state) result(total)
+        class(slider), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        real(dp) :: total   !! [F L]
+        type(energy_balance) :: energy
+
+        call self%take_stock(state, energy)
+        total = energy%held()
+    end function energy_of
 
     !> Held by the springs, the contact and the motion together.
     pure function held(self) result(total)

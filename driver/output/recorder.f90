@@ -2,9 +2,12 @@
 !> written, whatever happens to the run.
 module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use archive_file, only : archive
     use chain_events, only : chain_event
     use field_file, only : netcdf_fields
     use friction_mod, only : statev_mu, statev_r, statev_slip
+    use run_observer, only : observer, step_news
+    use run_settings, only : next_row, settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
     use text_file, only : output_file
@@ -23,75 +26,170 @@ module recorder
     integer, parameter :: rows_between_flushes = 200
     integer, parameter, public :: most_in_csv = 1000   !! blocks whose fields fit in a CSV file
 
-    type :: csv_recorder
+    type, extends(observer) :: csv_recorder
         type(output_file) :: series, events, fields
         type(netcdf_fields) :: netcdf   !! in place of `fields` for a long chain
+        character(len=:), allocatable :: base   !! of the files' names, with the directory
+        integer :: n_blocks = 1
+        real(dp) :: area = 1.0_dp       !! contact area of a block [L^2]
+        integer :: interval = 1         !! steps between two rows
+        real(dp) :: every = 0.0_dp      !! time between two rows; 0: rows by `interval` [T]
+        integer :: fields_interval = 0  !! steps between two rows of fields; 0: none
         integer :: rows = 0
+        integer :: rows_due = 0, fields_due = 0   !! steps since the last of them
     contains
-        procedure :: start, go_on, flush_all, fields_place, write_state, write_event, &
-            write_chain_event, write_fields, failed, finish
+        procedure :: prepare, open, begin, see, finish, visit
+        procedure :: flush_all, failed
+        procedure, private :: go_on, tell_loss, fields_name, has_long_fields, write_state, &
+            write_event, write_chain_events, write_fields
     end type csv_recorder
 
 contains
 
-    !> The catalogue of a chain has other columns than that of one block. Without a name for fields
-    !> none are written.
-    subroutine start(self, series_name, events_name, n_blocks, fields_name)
+    !> For files BASE.csv and so on.
+    subroutine prepare(self, run, base)
         class(csv_recorder), intent(inout) :: self
-        character(len=*), intent(in) :: series_name, events_name
-        integer, intent(in) :: n_blocks               !! more than one: a chain
-        character(len=*), intent(in) :: fields_name   !! may be empty
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: base
 
-        call self%series%create(series_name)
-        call self%events%create(events_name)
+        self%base = base
+        self%n_blocks = run%chain%n_blocks
+        self%area = run%area
+        self%interval = run%interval
+        self%every = run%every
+        self%fields_interval = run%fields
+    end subroutine prepare
+
+    !> Begins the files of a new run. The catalogue of a chain has other columns than that of one
+    !> block.
+    subroutine open(self)
+        class(csv_recorder), intent(inout) :: self
+
+        call self%series%create(self%base // '.csv')
+        call self%events%create(self%base // '_events.csv')
         call self%series%write_line(series_header)
-        if (n_blocks > 1) then
+        if (self%n_blocks > 1) then
             call self%events%write_line(chain_events_header)
         else
             call self%events%write_line(events_header)
         end if
-        if (is_netcdf(fields_name)) then
-            call self%netcdf%create(fields_name, n_blocks)
-        else if (len(fields_name) > 0) then
-            call self%fields%create(fields_name)
+        if (self%has_long_fields()) then
+            call self%netcdf%create(self%fields_name(), self%n_blocks)
+        else if (self%fields_interval > 0) then
+            call self%fields%create(self%fields_name())
             call self%fields%write_line(fields_header)
         end if
         call self%flush_all()
-    end subroutine start
+    end subroutine open
 
     !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
-    subroutine go_on(self, series_name, events_name, fields_name, rows, bytes)
+    subroutine go_on(self, series, events, fields)
         class(csv_recorder), intent(inout) :: self
-        character(len=*), intent(in) :: series_name, events_name, fields_name
-        integer, intent(in) :: rows              !! of the time series
-        integer(int64), intent(in) :: bytes(3)   !! of the time series, the events, the fields (rows
-                                                 !! in a NetCDF file)
+        integer(int64), intent(in) :: series, events   !! bytes
+        integer(int64), intent(in) :: fields           !! bytes, or rows of a NetCDF file
 
-        call self%series%go_on(series_name, bytes(1))
-        call self%events%go_on(events_name, bytes(2))
-        if (is_netcdf(fields_name)) then
-            call self%netcdf%go_on(fields_name, int(bytes(3)))
-        else if (len(fields_name) > 0) then
-            call self%fields%go_on(fields_name, bytes(3))
+        call self%series%go_on(self%base // '.csv', series)
+        call self%events%go_on(self%base // '_events.csv', events)
+        if (self%has_long_fields()) then
+            call self%netcdf%go_on(self%fields_name(), int(fields))
+        else if (self%fields_interval > 0) then
+            call self%fields%go_on(self%fields_name(), fields)
         end if
-        self%rows = rows
     end subroutine go_on
 
-    !> How much of the fields there is: bytes, or rows of a NetCDF file.
-    pure function fields_place(self) result(place)
+    !> Row 0 is the initial state.
+    subroutine begin(self, start, news)
+        class(csv_recorder), intent(inout) :: self
+        type(slider_state), intent(in) :: start
+        type(step_news), intent(inout) :: news
+
+        call self%write_state(start)
+        if (self%fields_interval > 0) call self%write_fields(start, start)
+        call self%tell_loss(news)
+    end subroutine begin
+
+    subroutine see(self, old, new, news)
+        class(csv_recorder), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(inout) :: news
+        integer :: i
+
+        if (news%complete) self%rows_due = self%rows_due + 1
+        if (self%rows_due == self%interval .or. news%last &
+            .or. next_row(self%every, old%time) <= new%time) call self%write_state(new)
+        if (self%rows_due == self%interval) self%rows_due = 0
+        if (self%fields_interval > 0) then
+            self%fields_due = self%fields_due + 1
+            if (self%fields_due == self%fields_interval) then
+                call self%write_fields(old, new)
+                self%fields_due = 0
+            end if
+        end if
+        if (self%n_blocks == 1) then
+            do i = 1, size(news%slip_events)
+                call self%write_event(news%slip_events(i))
+            end do
+        end if
+        call self%write_chain_events(news)
+        call self%tell_loss(news)
+    end subroutine see
+
+    subroutine tell_loss(self, news)
         class(csv_recorder), intent(in) :: self
-        integer(int64) :: place
+        type(step_news), intent(inout) :: news
 
-        place = self%fields%bytes + self%netcdf%rows   ! one of them is 0
-    end function fields_place
+        if (self%series%failed) call news%stop_run('cannot write the time series (disk full?)')
+        if (self%events%failed) call news%stop_run('cannot write the events (disk full?)')
+        if (self%fields%failed .or. self%netcdf%failed) call news%stop_run( &
+            'cannot write the fields (disk full?)')
+    end subroutine tell_loss
 
-    pure function is_netcdf(name)
-        character(len=*), intent(in) :: name
-        logical :: is_netcdf
+    !> Writes what was cut short, and closes the files.
+    subroutine finish(self, last, news)
+        class(csv_recorder), intent(inout) :: self
+        type(slider_state), intent(in) :: last
+        type(step_news), intent(inout) :: news
 
-        is_netcdf = index(name, '.nc', back=.true.) > 0 &
-            .and. index(name, '.nc', back=.true.) == len(name) - 2
-    end function is_netcdf
+        call self%write_chain_events(news)
+        call self%series%finish()
+        call self%events%finish()
+        call self%fields%finish()
+        call self%netcdf%finish()
+        if (self%failed()) call news%stop_run('cannot write the last rows (disk full?)')
+    end subroutine finish
+
+    !> Keeps the places of the files' ends; cuts the files to there when these are read.
+    subroutine visit(self, file)
+        class(csv_recorder), intent(inout) :: self
+        type(archive), intent(inout) :: file
+        integer(int64) :: series, events, fields
+
+        series = self%series%bytes
+        events = self%events%bytes
+        fields = self%fields%bytes + self%netcdf%rows   ! one of them is 0
+        call file%visit(self%rows)
+        call file%visit(self%rows_due)
+        call file%visit(self%fields_due)
+        call file%visit(series)
+        call file%visit(events)
+        call file%visit(fields)
+        if (file%is_read()) call self%go_on(series, events, fields)
+    end subroutine visit
+
+    pure function has_long_fields(self) result(yes)
+        class(csv_recorder), intent(in) :: self
+        logical :: yes
+
+        yes = self%fields_interval > 0 .and. self%n_blocks > most_in_csv
+    end function has_long_fields
+
+    pure function fields_name(self) result(name)
+        class(csv_recorder), intent(in) :: self
+        character(len=:), allocatable :: name
+
+        name = self%base // '_fields.csv'
+        if (self%n_blocks > most_in_csv) name = self%base // '_fields.nc'
+    end function fields_name
 
     subroutine flush_all(self)
         class(csv_recorder), intent(inout) :: self
@@ -130,20 +228,24 @@ contains
         mean = sum(values) / size(values)
     end function mean
 
-    !> One row of the catalogue of a chain.
-    subroutine write_chain_event(self, event, area, ended)
+    !> Rows of the catalogue of a chain.
+    subroutine write_chain_events(self, news)
         class(csv_recorder), intent(inout) :: self
-        type(chain_event), intent(in) :: event
-        real(dp), intent(in) :: area   !! contact area of a block [L^2]
-        logical, intent(in) :: ended   !! before the run did
+        type(step_news), intent(in) :: news
         character(len=24) :: blocks
+        integer :: i
 
-        write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
-        call self%events%write_line(row([event%onset, event%end - event%onset]) // ',' &
-            // trim(blocks) // ',' // row([event%slip / (event%last - event%first + 1), &
-            area * event%slip, event%peak_velocity]) // merge(',1', ',0', ended))
-        call self%events%flush_lines()
-    end subroutine write_chain_event
+        do i = 1, size(news%chain_events)
+            associate (event => news%chain_events(i))
+                write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
+                call self%events%write_line(row([event%onset, event%end - event%onset]) // ',' &
+                    // trim(blocks) // ',' // row([event%slip / (event%last - event%first + 1), &
+                    self%area * event%slip, event%peak_velocity]) &
+                    // merge(',0', ',1', news%cut_short))
+            end associate
+            call self%events%flush_lines()
+        end do
+    end subroutine write_chain_events
 
     !> The blocks after the step from `old` to `new`: a row of the NetCDF file, or in CSV a line
     !> each and an empty line for gnuplot.
@@ -171,16 +273,15 @@ contains
     end subroutine write_fields
 
     !> One row of the table of events. The first event has no recurrence time: NaN.
-    subroutine write_event(self, event, area)
+    subroutine write_event(self, event)
         class(csv_recorder), intent(inout) :: self
         type(slip_event), intent(in) :: event
-        real(dp), intent(in) :: area   !! contact area, turns forces into stresses [L^2]
         character(len=:), allocatable :: recurrence
 
         recurrence = 'NaN'
         if (.not. event%first) recurrence = row([event%recurrence])
-        call self%events%write_line(row([event%onset, event%duration, event%force_drop / area, &
-            event%slip, event%peak_velocity]) // ',' // recurrence)
+        call self%events%write_line(row([event%onset, event%duration, event%force_drop &
+            / self%area, event%slip, event%peak_velocity]) // ',' // recurrence)
         call self%events%flush_lines()
     end subroutine write_event
 
@@ -200,14 +301,5 @@ contains
         end do
         line = packed(:n)
     end function row
-
-    subroutine finish(self)
-        class(csv_recorder), intent(inout) :: self
-
-        call self%series%finish()
-        call self%events%finish()
-        call self%fields%finish()
-        call self%netcdf%finish()
-    end subroutine finish
 
 end module recorder

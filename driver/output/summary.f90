@@ -1,8 +1,8 @@
 !> What a run has come to, in a screen of text.
 module summary
     use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
+    use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use simulation, only : event_totals, outcome
     implicit none
     private
 

@@ -1,8 +1,8 @@
 !> One row of the table of a sweep: the values of its keys, and what the run has come to.
 module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use simulation, only : event_totals, outcome
     use sweep_settings, only : sweep_axis
     implicit none
     private

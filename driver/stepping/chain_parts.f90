@@ -8,15 +8,17 @@
 !> residual. If they do not, and where margins would be too wide, the whole chain is solved at once.
 module chain_parts
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : step_report
     use friction_mod, only : statev_size
+    use run_settings, only : settings
     use slider_system, only : ends_fixed, ends_fixed_free, ends_free, ends_free_fixed, &
         ends_periodic, slider, slider_state
-    use time_integrator, only : newmark, step_report
+    use time_integrator, only : generalised_alpha, newmark
     !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
     implicit none
     private
 
-    public :: parted_chain
+    public :: choose_method, parted_chain
 
     integer, parameter :: most_at_once = 1024   !! blocks that stay in cache as a whole
     !> Blocks of a part with its margins: three of those that the batch routine takes together. With
@@ -26,12 +28,12 @@ module chain_parts
     integer, parameter :: parts_of_thread = 8   !! that are worth a thread
 
     !> What a thread works with: a part with its margins as a chain of its own.
-    type :: worker
+    type :: part_workspace
         type(newmark) :: method
         type(slider) :: system
         type(slider_state) :: old, new
         real(dp), allocatable :: guess(:)   !! of its displacements at the end [L]
-    end type worker
+    end type part_workspace
 
     !> How the step of a part went.
     type :: part_report
@@ -47,10 +49,10 @@ module chain_parts
         integer :: parts
     end type chain_step
 
-    !> Of one method and one system.
-    type :: parted_chain
+    !> Of one system: its step is one of Newmark's, taken in parts.
+    type, extends(newmark) :: parted_chain
         integer :: split = 0   !! steps that were taken in parts
-        type(worker), allocatable, private :: workers(:)
+        type(part_workspace), allocatable, private :: workspaces(:)
         type(part_report), allocatable, private :: reports(:)
     contains
         procedure :: step
@@ -58,10 +60,29 @@ module chain_parts
 
 contains
 
-    !> As `step` of `newmark`, for any number of blocks.
-    subroutine step(self, method, system, drive, normal, dt, old, new, report, guess)
+    !> Newmark's or the generalised-alpha method, as a run asks for it and its blocks need it.
+    subroutine choose_method(run, method)
+        type(settings), intent(in) :: run
+        class(newmark), allocatable, intent(out) :: method
+
+        if (run%chain%n_blocks > most_at_once) then
+            allocate (parted_chain :: method)
+        else
+            allocate (newmark :: method)
+        end if
+        if (run%rho_infinity >= 0.0_dp) then
+            call method%set_as(generalised_alpha(run%rho_infinity, run%tolerance, &
+                run%max_iterations))
+        else
+            method%beta = run%beta
+            method%gamma = run%gamma
+            method%tolerance = run%tolerance
+            method%max_iterations = run%max_iterations
+        end if
+    end subroutine choose_method
+
+    subroutine step(self, system, drive, normal, dt, old, new, report, guess)
         class(parted_chain), intent(inout) :: self
-        type(newmark), intent(inout) :: method
         type(slider), intent(in) :: system
         real(dp), intent(in) :: drive, normal, dt
         type(slider_state), intent(in) :: old
@@ -75,18 +96,18 @@ contains
         solved = .false.
         iterations = 0
         this = chain_step(drive, normal, dt, margin=huge(this%margin), parts=0)
-        if (size(old%x) > most_at_once) this%margin = margin_of(method, system, dt)
+        if (size(old%x) > most_at_once) this%margin = margin_of(self, system, dt)
         if (this%margin <= widest_margin) then
             this%parts = (size(old%x) - 1) / (width - 2 * this%margin) + 1
-            call solve_parts(self, method, system, this, old, new, report, guess)
-            if (report%status >= 0) solved = seams_hold(self, method, system, this, new)
+            call solve_parts(self, system, this, old, new, report, guess)
+            if (report%status >= 0) solved = seams_hold(self, system, this, new)
             if (solved) then
                 self%split = self%split + 1
                 return
             end if
             iterations = report%iterations
         end if
-        call method%step(system, drive, normal, dt, old, new, report, guess)
+        call self%newmark%step(system, drive, normal, dt, old, new, report, guess)
         report%iterations = report%iterations + iterations
     end subroutine step
 
@@ -95,7 +116,7 @@ contains
     !> place. The contact's share in d is left out: it may be anything from its elastic stiffness to
     !> nothing.
     pure function margin_of(method, system, dt) result(blocks)
-        type(newmark), intent(in) :: method
+        class(newmark), intent(in) :: method
         type(slider), intent(in) :: system
         real(dp), intent(in) :: dt   !! [T]
         integer :: blocks
@@ -119,9 +140,8 @@ contains
     end function margin_of
 
     !> Every part by itself: the result does not depend on how many threads there are.
-    subroutine solve_parts(self, method, system, this, old, new, report, guess)
+    subroutine solve_parts(self, system, this, old, new, report, guess)
         class(parted_chain), intent(inout) :: self
-        type(newmark), intent(in) :: method
         type(slider), intent(in) :: system
         type(chain_step), intent(in) :: this
         type(slider_state), intent(in) :: old
@@ -132,12 +152,12 @@ contains
 
         threads = 1
         !$ threads = max(1, min(omp_get_max_threads(), this%parts / parts_of_thread))
-        call hire(self, threads, this%parts, method, system)
+        call prepare_workspaces(self, threads, this%parts, system)
         !$omp parallel do num_threads(threads) schedule(static) private(thread)
         do i = 1, this%parts
             thread = 1
             !$ thread = omp_get_thread_num() + 1
-            call solve_part(self%workers(thread), i, system, this, old, new, self%reports(i), &
+            call solve_part(self%workspaces(thread), i, system, this, old, new, self%reports(i), &
                 guess)
         end do
         !$omp end parallel do
@@ -151,11 +171,10 @@ contains
         report%scale = maxval(self%reports(:this%parts)%step%scale)
     end subroutine solve_parts
 
-    !> Sees to it that there are enough workers, who know what they work on.
-    subroutine hire(self, threads, parts, method, system)
+    !> Makes room for every thread and every part.
+    subroutine prepare_workspaces(self, threads, parts, system)
         class(parted_chain), intent(inout) :: self
         integer, intent(in) :: threads, parts
-        type(newmark), intent(in) :: method
         type(slider), intent(in) :: system
         integer :: i
 
@@ -163,19 +182,14 @@ contains
             if (size(self%reports) < parts) deallocate (self%reports)
         end if
         if (.not. allocated(self%reports)) allocate (self%reports(parts))
-        if (allocated(self%workers)) then
-            if (size(self%workers) >= threads) return
-            deallocate (self%workers)
+        if (allocated(self%workspaces)) then
+            if (size(self%workspaces) >= threads) return
+            deallocate (self%workspaces)
         end if
-        allocate (self%workers(threads))
+        allocate (self%workspaces(threads))
         do i = 1, threads
-            associate (w => self%workers(i))
-                w%method%beta = method%beta
-                w%method%gamma = method%gamma
-                w%method%tolerance = method%tolerance
-                w%method%max_iterations = method%max_iterations
-                w%method%alpha_m = method%alpha_m
-                w%method%alpha_f = method%alpha_f
+            associate (w => self%workspaces(i))
+                call w%method%set_as(self%newmark)
                 w%system = slider(system%mass, system%stiffness, system%damping, system%area, &
                     system%props, system%coupling)
                 if (allocated(system%load)) allocate (w%system%load(width))
@@ -184,7 +198,7 @@ contains
                 call make_room(w%new)
             end associate
         end do
-    end subroutine hire
+    end subroutine prepare_workspaces
 
     pure subroutine make_room(state)
         type(slider_state), intent(inout) :: state
@@ -210,7 +224,7 @@ contains
     end subroutine place_part
 
     subroutine solve_part(w, i, system, this, old, new, report, guess)
-        type(worker), intent(inout) :: w
+        type(part_workspace), intent(inout) :: w
         integer, intent(in) :: i
         type(slider), intent(in) :: system
         type(chain_step), intent(in) :: this
@@ -243,7 +257,7 @@ contains
     !> Walls where the blocks before and after the window are expected, or at the ends of the chain
     !> what there is.
     subroutine put_walls(w, system, this, old, start, guess)
-        type(worker), intent(inout) :: w
+        type(part_workspace), intent(inout) :: w
         type(slider), intent(in) :: system
         type(chain_step), intent(in) :: this
         type(slider_state), intent(in) :: old
@@ -290,7 +304,7 @@ contains
 
     !> The old state of the window's blocks.
     subroutine fetch_window(w, system, this, old, start, guess)
-        type(worker), intent(inout) :: w
+        type(part_workspace), intent(inout) :: w
         type(slider), intent(in) :: system
         type(chain_step), intent(in) :: this
         type(slider_state), intent(in) :: old
@@ -337,9 +351,8 @@ contains
 
     !> Have neighbouring parts found the same displacements at their seam, but for a force that is a
     !> tenth of the residual that is tolerated, or but for round-off?
-    pure function seams_hold(self, method, system, this, new) result(yes)
+    pure function seams_hold(self, system, this, new) result(yes)
         class(parted_chain), intent(in) :: self
-        type(newmark), intent(in) :: method
         type(slider), intent(in) :: system
         type(chain_step), intent(in) :: this
         type(slider_state), intent(in) :: new
@@ -363,7 +376,7 @@ contains
                 if (before >= 1) apart = abs(new%x(before) - r%beyond(1))
                 if (after <= n) apart = max(apart, abs(new%x(after) - r%beyond(2)))
                 largest = max(abs(new%x(first)), abs(new%x(last)))
-                yes = system%coupling * apart <= share * method%tolerance * r%step%scale &
+                yes = system%coupling * apart <= share * self%tolerance * r%step%scale &
                     .or. apart <= 2.0_dp * epsilon(apart) * largest
             end associate
             if (.not. yes) return

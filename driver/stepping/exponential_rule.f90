@@ -8,10 +8,10 @@
 !> of the step alone, as far as friction is smooth.
 module exponential_rule
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : step_report
     use driven_oscillator, only : oscillator, responses
     use friction_mod, only : friction_no_convergence
     use slider_system, only : friction_forces, slider, slider_state
-    use time_integrator, only : step_report
     implicit none
     private
 

@@ -2,6 +2,7 @@
 !> consistent tangent (docs/theory.md, section 7).
 module time_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : most_shown, step_report
     use friction_mod, only : friction_no_convergence, friction_ok
     use chain_solver, only : chain_matrix
     use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
@@ -9,7 +10,7 @@ module time_integrator
     implicit none
     private
 
-    public :: generalised_alpha, newmark, step_report
+    public :: generalised_alpha, newmark
 
     !> Room for a step, kept from one to the next; one number a block.
     type :: workspace
@@ -36,20 +37,8 @@ module time_integrator
         type(workspace), private :: work
         type(balance), private :: now
     contains
-        procedure :: step
+        procedure :: step, set_as
     end type newmark
-
-    integer, parameter :: most_shown = 20
-
-    !> How a step went.
-    type :: step_report
-        integer :: status = friction_ok     !! ok, snap back, or the error that ended the step
-        integer :: iterations = 0           !! linear systems solved
-        real(dp) :: stiffness = 0.0_dp      !! of drive spring and contact at the end, largest [F/L]
-        real(dp) :: scale = 0.0_dp          !! the largest force, by which a residual is held [F]
-        real(dp) :: residual(0:most_shown) = 0.0_dp   !! relative, before each iteration and at the
-                                                      !! end
-    end type step_report
 
 contains
 
@@ -69,6 +58,19 @@ contains
         method%gamma = 0.5_dp - method%alpha_m + method%alpha_f
         method%beta = 0.25_dp * (1.0_dp - method%alpha_m + method%alpha_f)**2
     end function generalised_alpha
+
+    !> Takes over the constants of a method, not its workspace.
+    pure subroutine set_as(self, other)
+        class(newmark), intent(inout) :: self
+        type(newmark), intent(in) :: other
+
+        self%beta = other%beta
+        self%gamma = other%gamma
+        self%tolerance = other%tolerance
+        self%max_iterations = other%max_iterations
+        self%alpha_m = other%alpha_m
+        self%alpha_f = other%alpha_f
+    end subroutine set_as
 
     !> Moves `old` by `dt` to `new`, under the drive position and normal traction at the end.
     !>

@@ -24,14 +24,11 @@ contains
 
     subroutine read_command_line(wanted)
         type(command), intent(out) :: wanted
-        character(len=:), allocatable :: word
-        integer :: i
 
         wanted%problem = ''
         wanted%input = ''
         wanted%output = ''
         wanted%verb = argument(1)
-        i = 2
         select case (wanted%verb)
         case ('run', 'point', 'sweep', 'check')
             continue
@@ -48,6 +45,26 @@ contains
             return
         end select
 
+        call read_options(wanted)
+        if (wanted%verb == '--help') return
+        if (len(wanted%problem) > 0) return
+        if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
+        if (wanted%verb /= 'run' .and. (wanted%resume .or. wanted%verify)) wanted%problem = &
+            '--resume and --verify are for run'
+        if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
+            .or. .not. wanted%plot .or. wanted%resume &
+            .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
+        wanted%stem = stem_of(wanted%input)
+        if (len(wanted%output) == 0) wanted%output = wanted%stem // '_out'
+    end subroutine read_command_line
+
+    !> What follows the verb.
+    subroutine read_options(wanted)
+        type(command), intent(inout) :: wanted
+        character(len=:), allocatable :: word
+        integer :: i
+
+        i = 2
         do while (i <= command_argument_count())
             word = argument(i)
             i = i + 1
@@ -74,16 +91,7 @@ contains
                 call take_input(wanted, word)
             end select
         end do
-        if (len(wanted%problem) > 0) return
-        if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
-        if (wanted%verb /= 'run' .and. (wanted%resume .or. wanted%verify)) wanted%problem = &
-            '--resume and --verify are for run'
-        if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
-            .or. .not. wanted%plot .or. wanted%resume &
-            .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
-        wanted%stem = stem_of(wanted%input)
-        if (len(wanted%output) == 0) wanted%output = wanted%stem // '_out'
-    end subroutine read_command_line
+    end subroutine read_options
 
     subroutine take_input(wanted, word)
         type(command), intent(inout) :: wanted

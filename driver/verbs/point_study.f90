@@ -10,8 +10,8 @@ module point_study
     use point_reader, only : group, read_point_settings
     use point_settings, only : point_run
     use progress_bar, only : progress
-    use study, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, is_readable, &
-        tell_failure
+    use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
+        is_readable, tell_failure
     implicit none
     private
 

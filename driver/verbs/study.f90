@@ -1,26 +1,29 @@
 !> The program's two verbs: check an input file, and run it.
 module study
-    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
     use chain_picture, only : draw_catalogue, draw_fields
-    use checkpoint, only : read_checkpoint, snapshot
+    use checkpoint, only : checkpoint_writer, read_checkpoint
     use command_line, only : command
     use field_file, only : netcdf_available
-    use namelist_input, only : namelist_file, read_namelist_file
+    use namelist_input, only : namelist_file
     use picture, only : draw_picture
-    use platform, only : make_directory, remove_file, watch_for_interrupts
+    use platform, only : remove_file, seconds, watch_for_interrupts
+    use progress_observer, only : progress_watch
     use recorder, only : csv_recorder, most_in_csv
+    use run_observer, only : observer_slot
+    use run_outcome, only : outcome
     use run_reader, only : read_settings
     use run_settings, only : settings
-    use simulation, only : outcome, simulate, start_run
+    use simulation, only : simulate, simulation_run, start_run
     use summary, only : print_event_times, print_summary
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
+    use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
+        is_readable, tell_failure
     implicit none
     private
 
-    public :: check_input, directory_is_ready, is_readable, run_input, tell_failure
-
-    integer, parameter, public :: exit_done = 0, exit_failed = 1, exit_bad_input = 2
+    public :: check_input, run_input
 
 contains
 
@@ -71,68 +74,32 @@ contains
             input
     end subroutine tell_verb
 
-    !> Reads a file, or says why it cannot be read.
-    function is_readable(name, file) result(readable)
-        character(len=*), intent(in) :: name
-        type(namelist_file), intent(out) :: file
-        logical :: readable
-        character(len=:), allocatable :: problem
-
-        call read_namelist_file(name, file, problem)
-        readable = len(problem) == 0
-        if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
-    end function is_readable
-
-    !> Makes the directory of the output, or says that it cannot be written to.
-    function directory_is_ready(name) result(ready)
-        character(len=*), intent(in) :: name
-        logical :: ready
-
-        ready = make_directory(name)
-        if (.not. ready) write (error_unit, '(3a)') &
-            "stickslip: cannot write to the directory '", name, "'"
-    end function directory_is_ready
-
-    subroutine tell_failure(input, failure, base)
-        character(len=*), intent(in) :: input, failure
-        character(len=*), intent(in) :: base   !! of the names of the files that were written
-
-        write (error_unit, '(4a)') 'stickslip: ', input, ': the run failed ', failure
-        write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
-    end subroutine tell_failure
-
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.
     subroutine run_input(wanted, exit_status)
         type(command), intent(in) :: wanted
         integer, intent(out) :: exit_status
-        type(settings) :: run
-        type(csv_recorder) :: records
+        type(settings), target :: run
+        type(simulation_run), target :: live
+        type(csv_recorder), target :: records
         type(outcome) :: result
-        type(snapshot) :: from
-        character(len=:), allocatable :: problem, base, fields
-        integer(int64) :: bytes(3)
-        integer :: rows
+        character(len=:), allocatable :: problem, base
 
         call check_input(wanted, run, exit_status)
         if (exit_status /= exit_done) return
 
         exit_status = exit_bad_input
         base = wanted%output // '/' // wanted%stem
-        fields = ''
-        if (run%fields > 0) fields = base // '_fields.csv'
-        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv) fields = base // '_fields.nc'
         if (.not. directory_is_ready(wanted%output)) return
+        call start_run(run, live)
+        call records%prepare(run, base)
         if (wanted%resume) then
-            call start_run(run, from)
-            call read_checkpoint(base // '.checkpoint', run, from, rows, bytes, problem)
+            call read_checkpoint(base // '.checkpoint', run, live, records, problem)
             if (len(problem) > 0) then
                 write (error_unit, '(2a)') 'stickslip: cannot resume: ', problem
                 return
             end if
-            call records%go_on(base // '.csv', base // '_events.csv', fields, rows, bytes)
         else
-            call records%start(base // '.csv', base // '_events.csv', run%chain%n_blocks, &
-                fields)
+            call records%open()
         end if
         if (records%failed()) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
@@ -140,14 +107,7 @@ contains
         end if
 
         call watch_for_interrupts()
-        if (wanted%resume) then
-            call simulate(run, records, .not. wanted%quiet, result, base // '.checkpoint', from)
-        else
-            call simulate(run, records, .not. wanted%quiet, result, base // '.checkpoint')
-        end if
-        call records%finish()
-        if (records%failed() .and. len(result%failure) == 0) result%failure = &
-            'at its end: cannot write the last rows (disk full?)'
+        call watched_run(wanted, base, run, live, records, result)
         if (.not. wanted%quiet) call print_summary(run, result, base // '.csv')
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
@@ -156,14 +116,47 @@ contains
             call tell_failure(wanted%input, result%failure, base)
             exit_status = exit_failed
         end if
-        if (.not. wanted%plot) return
+        if (wanted%plot .and. .not. result%interrupted) call draw_pictures(wanted, run, result)
+    end subroutine run_input
+
+    !> Simulates with all that watches: files, checkpoints, the progress bar.
+    subroutine watched_run(wanted, base, run, live, records, result)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        type(settings), target, intent(inout) :: run
+        type(simulation_run), target, intent(inout) :: live
+        type(csv_recorder), target, intent(inout) :: records
+        type(outcome), intent(out) :: result
+        type(checkpoint_writer), target :: checkpoints
+        type(progress_watch), target :: bar
+        type(observer_slot) :: observers(3)
+
+        checkpoints%name = base // '.checkpoint'
+        checkpoints%run => run
+        checkpoints%live => live
+        checkpoints%records => records
+        checkpoints%last = seconds()
+        call bar%prepare(.not. wanted%quiet, live%state%time, run%t_end)
+        observers(1)%it => records
+        observers(2)%it => bar
+        observers(3)%it => checkpoints
+        call simulate(live, observers, result)
+    end subroutine watched_run
+
+    subroutine draw_pictures(wanted, run, result)
+        type(command), intent(in) :: wanted
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        character(len=:), allocatable :: problem
+
         call draw_picture(wanted%output, wanted%stem, problem)
         if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(wanted%output, &
             wanted%stem, problem)
-        if (len(problem) == 0 .and. index(fields, '.csv') > 0) call draw_fields(wanted%output, &
-            wanted%stem, run%chain%slip_rate, problem)
+        if (len(problem) == 0 .and. run%fields > 0 .and. run%chain%n_blocks <= most_in_csv) then
+            call draw_fields(wanted%output, wanted%stem, run%chain%slip_rate, problem)
+        end if
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
-    end subroutine run_input
+    end subroutine draw_pictures
 
     !> A second run, at a tenth of the tolerance or half of the step, that leaves no files: how far
     !> its events are from those of the first is about the error of these.
@@ -172,7 +165,8 @@ contains
         type(outcome), intent(in) :: result
         type(settings) :: tighter
         type(outcome) :: reference
-        type(csv_recorder) :: nowhere
+        type(simulation_run) :: live
+        type(observer_slot) :: nobody(0)
 
         tighter = run
         if (run%adaptive) then
@@ -180,10 +174,8 @@ contains
         else
             tighter%dt = 0.5_dp * run%dt
         end if
-        call nowhere%start('/dev/null', '/dev/null', 1, '')
-        tighter%fields = 0
-        call simulate(tighter, nowhere, .false., reference)
-        call nowhere%finish()
+        call start_run(tighter, live)
+        call simulate(live, nobody, reference)
         if (len(reference%failure) > 0) then
             write (error_unit, '(2a)') 'stickslip: the tighter run failed ', reference%failure
         else

@@ -8,16 +8,17 @@ module sweep
     use namelist_input, only : namelist_file, read_namelist_file
     use platform, only : cores, make_directory, rename_file
     use progress_bar, only : progress
-    use recorder, only : csv_recorder
+    use run_observer, only : observer_slot
+    use run_outcome, only : outcome
     use run_settings, only : settings
-    use simulation, only : outcome, simulate
-    use study, only : exit_bad_input, exit_done, exit_failed
+    use simulation, only : simulate, simulation_run, start_run
     use sweep_journal, only : journal, text_line
     use sweep_picture, only : draw_sweep
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
     use text_file, only : output_file
+    use verb_common, only : exit_bad_input, exit_done, exit_failed
     implicit none
     private
 
@@ -184,10 +185,12 @@ contains
     function run_one(run) result(text)
         type(settings), intent(in) :: run
         character(len=:), allocatable :: text
-        type(csv_recorder) :: nowhere   ! never started: keeps nothing
+        type(simulation_run) :: live
+        type(observer_slot) :: nobody(0)
         type(outcome) :: result
 
-        call simulate(run, nowhere, .false., result)
+        call start_run(run, live)
+        call simulate(live, nobody, result)
         text = result_text(run, result)
     end function run_one
 

@@ -110,6 +110,24 @@ class StopAndGo(LongRun):
             self.assertIn(said, result.stderr)
             self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), rows)
 
+    def test_a_checkpoint_with_one_flipped_bit_is_refused(self):
+        (self.folder / 'case.nml').write_text(FIXED.replace('t_end = 40', 't_end = 4e4'))
+        process = self.start()
+        self.wait_for('case_out/case.checkpoint')
+        process.kill()
+        process.communicate()
+        checkpoint = self.folder / 'case_out/case.checkpoint'
+        kept = checkpoint.read_bytes()
+        rows = (self.folder / 'case_out/case.csv').read_bytes()
+        for bit in range(3, 8 * len(kept), 8 * len(kept) // 97):   # places all over the file
+            damaged = bytearray(kept)
+            damaged[bit // 8] ^= 1 << bit % 8
+            checkpoint.write_bytes(damaged)
+            result = self.run_program('run', 'case.nml', '--resume', '--no-plot')
+            self.assertEqual(result.returncode, 2, bit)
+            self.assertIn('is no checkpoint of this version' if bit < 64 else 'is damaged', result.stderr)
+        self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), rows)
+
     def test_bad_checkpoint_interval(self):
         self.refused(namelist({('output', 'checkpoint'): '-1'}), '&output checkpoint = -1: must be >= 0')
 

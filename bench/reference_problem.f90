@@ -1,13 +1,12 @@
 !> The reference problem of the driver's bars, and its runs with fixed steps.
-module fixed_steps
+module reference_problem
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use checkpoint, only : snapshot
+    use abstract_integrator, only : step_report
     use loading_programme, only : programme
     use run_settings, only : settings
-    use simulation, only : start_run
+    use simulation, only : simulation_run, start_run
     use slider_system, only : slider_state
     use slip_events, only : moment, slip_event, turning_point
-    use time_integrator, only : step_report
     implicit none
     private
 
@@ -28,25 +27,17 @@ contains
         run%mass = 1.0e-3_dp
         run%stiffness = 1.0_dp
         run%damping = damping
-        run%area = 1.0_dp
         run%drive = programme(start=[0.0_dp], travel=[0.0_dp], velocity=[1.0_dp], &
             acceleration=[0.0_dp], normal=[10.0_dp], normal_rate=[0.0_dp])
         run%t_end = t_end
         run%dt = 1.0e-6_dp * t_end
-        run%checkpoint = 0.0_dp
         run%adaptive = present(rtol)
         if (present(dt)) run%dt = dt
         if (present(rtol)) run%rtol = rtol
         run%dt_max = t_end
         run%dt_min = 1.0e-12_dp * t_end
         run%order = 1 + nint(run%props(10))
-        run%beta = 0.25_dp
-        run%gamma = 0.5_dp
-        run%rho_infinity = -1.0_dp
-        run%tolerance = 1.0e-10_dp
-        run%max_iterations = 25
         run%interval = huge(run%interval)
-        run%fields = 0
         run%n_steps = nint(t_end / run%dt)
     end function problem
 
@@ -56,13 +47,13 @@ contains
         integer, intent(in) :: event
         real(dp), intent(out) :: onset   !! [T]
         real(dp), intent(out) :: peak    !! [F]
-        type(snapshot) :: live
+        type(simulation_run) :: live
         type(slider_state) :: new
         type(step_report) :: report
         type(slip_event) :: seen_event
         type(moment) :: before, now, turn
         integer :: events
-        logical :: found, complete
+        logical :: found
 
         call start_run(run, live)
         new = live%state
@@ -70,7 +61,7 @@ contains
         peak = 0.0_dp
         before = seen(run, live%state)
         do while (.not. live%steps%finished(live%state) .and. events < event)
-            call live%steps%take_step(live%state, new, report, complete)
+            call live%steps%step(live%state, new, report)
             if (report%status < 0) exit
             now = seen(run, new)
             call turning_point(before, now, turn, found)
@@ -87,7 +78,7 @@ contains
             logical :: over
 
             if (events < event) peak = max(peak, at%force)
-            call live%finder%look(at, seen_event, over)
+            call live%slip_events%finder%look(at, seen_event, over)
             if (.not. over) return
             events = events + 1
             onset = seen_event%onset
@@ -107,4 +98,4 @@ contains
         now%rate = run%stiffness * (run%drive%velocity(1) - state%v(1))
     end function seen
 
-end module fixed_steps
+end module reference_problem

@@ -1,25 +1,26 @@
-!> Chooses the steps in time, and repeats those that fail.
+!> Chooses the steps in time by their error, and repeats those that fail.
 !>
 !> Adaptive steps are taken as a whole and in two halves, those of the exponential rule in three
 !> thirds as well. From these the leading terms of the error are extrapolated away (Richardson); how
 !> much the coarsest one matters in that estimates the error.
-module step_control
+module adaptive_steps
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use chain_parts, only : parted_chain
+    use abstract_integrator, only : integrator, step_report
+    use archive_file, only : archive
+    use chain_parts, only : choose_method
     use exponential_rule, only : exponential
-    use friction_mod, only : friction_no_convergence, statev_dissipation, statev_mu, statev_r, &
-        statev_slip, statev_status
+    use friction_mod, only : friction_message, friction_no_convergence, statev_dissipation, &
+        statev_mu, statev_r, statev_slip, statev_status
     use law_facts, only : coefficient_error, is_subloading, typical_coefficient
-    use loading_programme, only : programme
-    use run_settings, only : settings
+    use run_settings, only : next_row, settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
-    use time_integrator, only : generalised_alpha, newmark, step_report
+    use time_integrator, only : newmark
     use turning_times, only : next_turn, oscillation_of, turn, visible_swing
     implicit none
     private
 
-    public :: next_row, stepper
+    public :: adaptive
 
     integer, parameter :: most_levels = 3
     !> Part of the time that no adaptive step is shorter than: a third of it is still more than
@@ -27,20 +28,9 @@ module step_control
     real(dp), parameter :: shortest = 1.0e-14_dp
     real(dp), parameter :: swing = 0.1_dp   !! that does not matter, part of the tolerated error
 
-    type :: stepper
-        type(slider) :: system
-        type(newmark) :: method
-        type(parted_chain), private :: blocks   !! takes its steps, of one block or many
-        type(programme) :: drive
-        real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
-        real(dp) :: t_end = 0.0_dp     !! [T]
-        logical :: adaptive = .false.
-        real(dp) :: dt = 0.0_dp        !! fixed, or next to try [T]
-        integer :: passed = 0          !! fixed steps behind us
-        integer :: parts = 1           !! pieces that the fixed step is being taken in
-        integer :: rejected = 0        !! steps that were tried in vain
-        integer :: iterations = 0, most_iterations = 0   !! of Newton's method, the latter in a step
-        ! of adaptive steps alone
+    type, extends(integrator) :: adaptive
+        class(newmark), allocatable :: method
+        real(dp) :: dt = 0.0_dp        !! next to try [T]
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
         real(dp) :: every = 0.0_dp     !! steps end at multiples of this time, unless it is 0 [T]
         logical :: exponential = .false.   !! steps by the exponential rule, not by `method`
@@ -58,36 +48,24 @@ module step_control
         type(slider_state), private :: ends(most_levels)   !! by one step, two halves, three thirds
         type(slider_state), private :: passing             !! room for a state
     contains
-        procedure :: begin, take_step, finished
-        procedure, private :: choose_rule, take_fixed_step, take_adaptive_step, next_end, try, &
-            try_levels, error_of, extrapolate, next_limit, reversal, opening
-    end type stepper
-
-    integer, parameter :: most_parts = 2**20   !! of a fixed step
+        procedure :: prepare, step, visit, why_stopped
+        procedure, private :: choose_rule, next_end, try, try_levels, error_of, extrapolate, &
+            next_limit, reversal, opening
+    end type adaptive
 
 contains
 
-    subroutine begin(self, run, system, start)
-        class(stepper), intent(out) :: self
+    subroutine prepare(self, run, system, start)
+        class(adaptive), intent(inout) :: self
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: start   !! the state at time 0
+        type(slider_state), intent(in) :: start
         real(dp), parameter :: noticed = 1.0e-3_dp   !! part of the static friction force; slip
                                                      !! events begin at ten times as much
 
-        self%system = system
-        self%drive = run%drive
-        self%origin = start%drive
+        call self%take_run(run, system, start)
+        call choose_method(run, self%method)
         self%dt = run%dt
-        self%t_end = run%t_end
-        self%adaptive = run%adaptive
-        self%method%beta = run%beta
-        self%method%gamma = run%gamma
-        self%method%tolerance = run%tolerance
-        self%method%max_iterations = run%max_iterations
-        if (run%rho_infinity >= 0.0_dp) self%method = generalised_alpha(run%rho_infinity, &
-            run%tolerance, run%max_iterations)
-        if (.not. run%adaptive) return
         self%dt_min = run%dt_min
         self%dt_max = run%dt_max
         self%every = run%every
@@ -100,11 +78,11 @@ contains
         self%middle = start
         self%passing = start
         self%ends = start
-    end subroutine begin
+    end subroutine prepare
 
     !> The exponential rule serves one block with a mass, unless another method is asked for.
     subroutine choose_rule(self, run, blocks)
-        class(stepper), intent(inout) :: self
+        class(adaptive), intent(inout) :: self
         type(settings), intent(in) :: run
         integer, intent(in) :: blocks
         real(dp), parameter :: negligible = 1.0e-6_dp   !! part of the tolerated error
@@ -140,33 +118,34 @@ contains
 
     end subroutine choose_rule
 
-    pure function finished(self, state) result(yes)
-        class(stepper), intent(in) :: self
-        type(slider_state), intent(in) :: state
-        logical :: yes
+    subroutine visit(self, file)
+        class(adaptive), intent(inout) :: self
+        type(archive), intent(inout) :: file
 
-        yes = state%time >= self%t_end
-    end function finished
+        call self%visit_counts(file)
+        call file%visit(self%dt)
+        call file%visit(self%last_error)
+        call file%visit(self%rule%contact)
+    end subroutine visit
 
-    !> The next step.
-    subroutine take_step(self, old, new, report, complete)
-        class(stepper), intent(inout) :: self
-        type(slider_state), intent(inout) :: old   !! a jump of the normal traction changes it
-        type(slider_state), intent(inout) :: new   !! allocated like `old`
-        type(step_report), intent(out) :: report
-        logical, intent(out) :: complete   !! not a part of a fixed step
+    subroutine why_stopped(self, status, why)
+        class(adaptive), intent(in) :: self
+        integer, intent(in) :: status
+        character(len=:), allocatable, intent(out) :: why
 
-        complete = .true.
-        if (self%adaptive) then
-            call self%take_adaptive_step(old, new, report)
+        if (status /= friction_no_convergence) then
+            why = trim(friction_message(status))
+        else if (self%system%mass <= 0.0_dp) then
+            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
+                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
         else
-            call self%take_fixed_step(old, new, report, complete)
+            why = 'not within the tolerance by steps as short as dt_min'
         end if
-    end subroutine take_step
+    end subroutine why_stopped
 
     !> One step from `old` to `time`, in one piece of the programme.
     subroutine try(self, old, time, piece, new, report, guess, first)
-        class(stepper), intent(inout) :: self
+        class(adaptive), intent(inout) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: time   !! [T]
         integer, intent(in) :: piece
@@ -182,53 +161,16 @@ contains
             call self%rule%step(self%system, drive, normal, time - old%time, old, new, report, &
                 present(first), guess)
         else
-            call self%blocks%step(self%method, self%system, drive, normal, time - old%time, old, &
-                new, report, guess)
+            call self%method%step(self%system, drive, normal, time - old%time, old, new, report, &
+                guess)
             if (report%status >= 0) call self%system%account(old, new)
         end if
         new%time = time
-        self%iterations = self%iterations + report%iterations
-        self%most_iterations = max(self%most_iterations, report%iterations)
+        call self%count_iterations(report%iterations)
     end subroutine try
 
-    ! ---- fixed steps -------------------------------------------------------------------------
-
-    !> With a mass the step is the fixed one; without, a step that fails is taken in parts, because
-    !> the balance of forces may be followed in small steps where it cannot be found in a large one.
-    subroutine take_fixed_step(self, old, new, report, complete)
-        class(stepper), intent(inout) :: self
-        type(slider_state), intent(in) :: old
-        type(slider_state), intent(inout) :: new
-        type(step_report), intent(out) :: report
-        logical, intent(out) :: complete
-        real(dp), parameter :: round_off = 1.0e-9_dp
-        real(dp) :: aim, time
-
-        aim = (self%passed + 1) * self%dt
-        if (aim > self%t_end * (1.0_dp - round_off)) aim = self%t_end
-        do
-            complete = self%parts == 1
-            time = aim
-            if (.not. complete) time = old%time + (aim - old%time) / self%parts
-            call self%try(old, time, self%drive%piece(time), new, report)
-            if (report%status >= 0 .or. self%system%mass > 0.0_dp) exit
-            if (2 * self%parts > most_parts) exit
-            self%parts = 2 * self%parts
-            self%rejected = self%rejected + 1
-        end do
-        if (report%status < 0) return
-        if (complete) then
-            self%passed = self%passed + 1
-        else
-            self%parts = self%parts - 1
-            if (mod(self%parts, 2) == 0) self%parts = self%parts / 2
-        end if
-    end subroutine take_fixed_step
-
-    ! ---- adaptive steps ----------------------------------------------------------------------
-
-    subroutine take_adaptive_step(self, old, new, report)
-        class(stepper), intent(inout) :: self
+    subroutine step(self, old, new, report)
+        class(adaptive), intent(inout) :: self
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
@@ -236,7 +178,7 @@ contains
         real(dp) :: limit, end, dt, error, power, event, kink
         integer, parameter :: most_cuts = 3   !! of a step, at an event found more and more exactly
         integer :: piece, cuts
-        logical :: pressed   !! or is it for this step to do?
+        logical :: pressed   !! false: this step has to apply the sudden normal traction
 
         power = 1.0_dp / (self%order * (self%levels - 1) + 1)
         piece = self%drive%piece(old%time)
@@ -307,12 +249,12 @@ contains
                 .and. end - time > shortest * end
         end function matters
 
-    end subroutine take_adaptive_step
+    end subroutine step
 
     !> Where a step from a time ends at the latest: at the next piece, the next row, or the end of
     !> the run. Of those that are no step apart it is the last.
     pure function next_limit(self, time) result(limit)
-        class(stepper), intent(in) :: self
+        class(adaptive), intent(in) :: self
         real(dp), intent(in) :: time   !! [T]
         real(dp) :: limit              !! [T]
         real(dp) :: next
@@ -326,22 +268,9 @@ contains
         end do
     end function next_limit
 
-    !> The first multiple of `every` after a time; huge if there is none.
-    pure function next_row(every, time) result(next)
-        real(dp), intent(in) :: every, time   !! [T]
-        real(dp) :: next                      !! [T]
-        real(dp) :: n
-
-        next = huge(next)
-        if (every <= 0.0_dp) return
-        n = anint(time / every)
-        if (every * n <= time) n = n + 1.0_dp
-        next = every * n
-    end function next_row
-
-    !> Where the step should end, as far as error and oscillation have a say.
+    !> Where the step should end by its error and by the oscillation.
     pure function next_end(self, old, piece) result(end)
-        class(stepper), intent(in) :: self
+        class(adaptive), intent(in) :: self
         type(slider_state), intent(in) :: old
         integer, intent(in) :: piece
         real(dp) :: end   !! [T]
@@ -383,7 +312,7 @@ contains
 
     !> The step as a whole, in halves, and in thirds; `middle` is the end of the first half.
     subroutine try_levels(self, old, end, piece, report)
-        class(stepper), intent(inout) :: self
+        class(adaptive), intent(inout) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: end         !! of the step [T]
         integer, intent(in) :: piece
@@ -409,7 +338,7 @@ contains
     !> they mean to the spring, velocity by the amplitude that it becomes, what the law remembers by
     !> the friction force that it changes.
     function error_of(self) result(error)
-        class(stepper), intent(inout) :: self
+        class(adaptive), intent(inout) :: self
         real(dp) :: error
 
         call blend(self%ends(:self%levels), self%doubts(:self%levels), self%passing)
@@ -427,7 +356,7 @@ contains
     !> oscillation that is faster than a step of Newmark's, which takes a mass, and must not leave
     !> the range of the law's variables.
     subroutine extrapolate(self, old, new)
-        class(stepper), intent(inout) :: self
+        class(adaptive), intent(inout) :: self
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
         real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
@@ -464,7 +393,7 @@ contains
     !> When slip began or ended within the last step, unless next to its ends: friction has a kink
     !> there. In steps of Newmark's it counts if a block stuck or slipped differently since.
     pure function reversal(self, old) result(time)
-        class(stepper), intent(in) :: self
+        class(adaptive), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp) :: time   !! [T]; huge without such a moment
 
@@ -499,7 +428,7 @@ contains
     !> When the normal traction vanishes, or comes back, within a step; huge if neither. The last
     !> moment before: a part of a step that ends behind it slips all the way, or not at all.
     pure function opening(self, old, end, piece) result(time)
-        class(stepper), intent(in) :: self
+        class(adaptive), intent(in) :: self
         type(slider_state), intent(in) :: old
         real(dp), intent(in) :: end       !! of the step [T]
         integer, intent(in) :: piece
@@ -523,4 +452,4 @@ contains
         end do
     end function opening
 
-end module step_control
+end module adaptive_steps

@@ -1,0 +1,131 @@
+!> Looks for slip events in a run and adds them up, piece by piece of the programme.
+module slip_observer
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use archive_file, only : archive
+    use friction_mod, only : statev_slip
+    use law_facts, only : typical_coefficient
+    use loading_programme, only : programme
+    use run_observer, only : observer, step_news
+    use run_outcome, only : event_totals
+    use run_settings, only : settings
+    use slider_system, only : slider_state
+    use slip_events, only : event_finder, moment, slip_event, turning_point
+    implicit none
+    private
+
+    public :: slip_watch
+
+    !> A fall of the spring force counts as a slip event from this part of the static friction force
+    !> on.
+    real(dp), parameter :: smallest_drop = 0.01_dp
+
+    type, extends(observer) :: slip_watch
+        type(programme) :: drive
+        real(dp) :: stiffness = 0.0_dp                 !! of the drive spring [F/L]
+        type(event_finder) :: finder
+        type(event_totals), allocatable :: pieces(:)
+        real(dp), allocatable :: onsets(:)             !! of the events [T]
+        real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
+    contains
+        procedure :: prepare, see, visit
+        procedure, private :: look
+    end type slip_watch
+
+contains
+
+    subroutine prepare(self, run)
+        class(slip_watch), intent(inout) :: self
+        type(settings), intent(in) :: run
+
+        self%drive = run%drive
+        self%stiffness = run%stiffness
+        self%finder%threshold = smallest_drop * run%area &
+            * typical_coefficient(run%props) * run%drive%largest_normal()
+        allocate (self%pieces(run%drive%listed), self%onsets(0))
+    end subroutine prepare
+
+    !> Looks at the end of a step and where the force turns within.
+    subroutine see(self, old, new, news)
+        class(slip_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(inout) :: news
+        type(moment) :: turn, now
+        logical :: found
+        integer :: i
+
+        i = self%drive%piece(old%time)
+        now = seen(self, new, i)
+        call turning_point(seen(self, old, i), now, turn, found)
+        if (found .and. new%time <= self%drive%next_start(old%time)) call self%look(turn, news)
+        call self%look(now, news)
+        self%peak_velocity = max(self%peak_velocity, maxval(new%v))
+    end subroutine see
+
+    !> What the finder looks at, as means over the blocks.
+    pure function seen(self, state, i) result(now)
+        class(slip_watch), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        integer, intent(in) :: i   !! piece of the programme
+        type(moment) :: now
+        real(dp) :: velocity, spring, slip   ! sums, then means over the blocks
+        integer :: n, k
+
+        n = size(state%x)
+        velocity = 0.0_dp
+        spring = 0.0_dp
+        slip = 0.0_dp
+        do k = 1, n
+            velocity = velocity + state%v(k)
+            spring = spring + state%spring(k)
+            slip = slip + state%statev(k, statev_slip)
+        end do
+        velocity = velocity / n
+        now = moment(state%time, spring / n, slip / n, velocity, &
+            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity))
+    end function seen
+
+    subroutine look(self, now, news)
+        class(slip_watch), intent(inout) :: self
+        type(moment), intent(in) :: now
+        type(step_news), intent(inout) :: news
+        type(slip_event) :: event
+        logical :: found
+        integer :: i
+
+        call self%finder%look(now, event, found)
+        if (.not. found) return
+        i = min(self%drive%piece(event%onset), self%drive%listed)
+        call add_event(self%pieces(i), event, self%drive%start(i))
+        self%onsets = [self%onsets, event%onset]
+        news%slip_events = [news%slip_events, event]
+    end subroutine look
+
+    !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time
+    !> that began in the piece before says nothing about either.
+    pure subroutine add_event(totals, event, piece_start)
+        type(event_totals), intent(inout) :: totals
+        type(slip_event), intent(in) :: event
+        real(dp), intent(in) :: piece_start
+
+        totals%events = totals%events + 1
+        totals%force_drop = totals%force_drop + event%force_drop
+        totals%peak_velocity = max(totals%peak_velocity, event%peak_velocity)
+        if (event%first .or. event%onset - event%recurrence < piece_start) return
+        totals%recurrences = totals%recurrences + 1
+        totals%period = totals%period + event%recurrence
+    end subroutine add_event
+
+    subroutine visit(self, file)
+        class(slip_watch), intent(inout) :: self
+        type(archive), intent(inout) :: file
+        integer :: i
+
+        call self%finder%visit(file)
+        do i = 1, size(self%pieces)
+            call self%pieces(i)%visit(file)
+        end do
+        call file%visit_list(self%onsets)
+        call file%visit(self%peak_velocity)
+    end subroutine visit
+
+end module slip_observer

@@ -1,0 +1,103 @@
+!> Steps of one length, by Newmark's or the generalised-alpha method.
+module fixed_steps
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : integrator, step_report
+    use archive_file, only : archive
+    use chain_parts, only : choose_method
+    use friction_mod, only : friction_message, friction_no_convergence
+    use run_settings, only : settings
+    use slider_system, only : slider, slider_state
+    use time_integrator, only : newmark
+    implicit none
+    private
+
+    public :: fixed
+
+    type, extends(integrator) :: fixed
+        class(newmark), allocatable :: method
+        real(dp) :: dt = 0.0_dp        !! the step [T]
+        integer :: passed = 0          !! whole steps behind us
+        integer :: parts = 1           !! pieces that the step is being taken in
+    contains
+        procedure :: prepare, step, visit, why_stopped
+    end type fixed
+
+    integer, parameter :: most_parts = 2**20   !! of a step
+
+contains
+
+    subroutine prepare(self, run, system, start)
+        class(fixed), intent(inout) :: self
+        type(settings), intent(in) :: run
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: start
+
+        call self%take_run(run, system, start)
+        call choose_method(run, self%method)
+        self%dt = run%dt
+    end subroutine prepare
+
+    !> With a mass the step is the fixed one; without, a step that fails is taken in parts, because
+    !> the balance of forces may be followed in small steps where it cannot be found in a large one.
+    subroutine step(self, old, new, report)
+        class(fixed), intent(inout) :: self
+        type(slider_state), intent(inout) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(out) :: report
+        real(dp), parameter :: round_off = 1.0e-9_dp
+        real(dp) :: aim, time
+        logical :: complete
+
+        aim = (self%passed + 1) * self%dt
+        if (aim > self%t_end * (1.0_dp - round_off)) aim = self%t_end
+        do
+            complete = self%parts == 1
+            time = aim
+            if (.not. complete) time = old%time + (aim - old%time) / self%parts
+            call self%method%step(self%system, self%origin + self%drive%position(time), &
+                self%drive%normal_traction(time, self%drive%piece(time)), time - old%time, old, &
+                new, report)
+            if (report%status >= 0) call self%system%account(old, new)
+            new%time = time
+            call self%count_iterations(report%iterations)
+            if (report%status >= 0 .or. self%system%mass > 0.0_dp) exit
+            if (2 * self%parts > most_parts) exit
+            self%parts = 2 * self%parts
+            self%rejected = self%rejected + 1
+        end do
+        report%complete = complete
+        if (report%status < 0) return
+        if (complete) then
+            self%passed = self%passed + 1
+        else
+            self%parts = self%parts - 1
+            if (mod(self%parts, 2) == 0) self%parts = self%parts / 2
+        end if
+    end subroutine step
+
+    subroutine visit(self, file)
+        class(fixed), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call self%visit_counts(file)
+        call file%visit(self%passed)
+        call file%visit(self%parts)
+    end subroutine visit
+
+    subroutine why_stopped(self, status, why)
+        class(fixed), intent(in) :: self
+        integer, intent(in) :: status
+        character(len=:), allocatable, intent(out) :: why
+
+        if (status /= friction_no_convergence) then
+            why = trim(friction_message(status))
+        else if (self%system%mass <= 0.0_dp) then
+            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
+                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
+        else
+            why = 'Newton''s method finds no balance of forces at the end of the step: take a ' &
+                // 'smaller dt, or adaptive steps (rtol)'
+        end if
+    end subroutine why_stopped
+
+end module fixed_steps

@@ -1,0 +1,45 @@
+!> What all verbs share: exit statuses, an input that can be read, a directory that is ready.
+module verb_common
+    use, intrinsic :: iso_fortran_env, only : error_unit
+    use namelist_input, only : namelist_file, read_namelist_file
+    use platform, only : make_directory
+    implicit none
+    private
+
+    public :: directory_is_ready, is_readable, tell_failure
+
+    integer, parameter, public :: exit_done = 0, exit_failed = 1, exit_bad_input = 2
+
+contains
+
+    !> Reads a file, or says why it cannot be read.
+    function is_readable(name, file) result(readable)
+        character(len=*), intent(in) :: name
+        type(namelist_file), intent(out) :: file
+        logical :: readable
+        character(len=:), allocatable :: problem
+
+        call read_namelist_file(name, file, problem)
+        readable = len(problem) == 0
+        if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
+    end function is_readable
+
+    !> Makes the directory of the output, or says that it cannot be written to.
+    function directory_is_ready(name) result(ready)
+        character(len=*), intent(in) :: name
+        logical :: ready
+
+        ready = make_directory(name)
+        if (.not. ready) write (error_unit, '(3a)') &
+            "stickslip: cannot write to the directory '", name, "'"
+    end function directory_is_ready
+
+    subroutine tell_failure(input, failure, base)
+        character(len=*), intent(in) :: input, failure
+        character(len=*), intent(in) :: base   !! of the names of the files that were written
+
+        write (error_unit, '(4a)') 'stickslip: ', input, ': the run failed ', failure
+        write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
+    end subroutine tell_failure
+
+end module verb_common
