@@ -1,126 +1,453 @@
-!> Reads tables of numbers from CSV files and finds every fault in them, with line and column.
+!> Reads columns of numbers from tables as rigs and spreadsheets write them, and finds every fault,
+!> with its line.
 !>
-!> The first line names the columns. Empty lines and lines that start with # do not count.
+!> Cells are separated by commas, semicolons, tabs or blanks, and may stand in double quotes. The
+!> line of column names is found by the names that are asked for; titles before it, up to two rows
+!> of units or the like behind it, other columns, empty lines and lines that start with # or %
+!> are left alone. A line of names may itself be such a comment. Numbers have a decimal point or a
+!> decimal comma, the same in the whole file.
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-    use, intrinsic :: iso_fortran_env, only : dp => real64, iostat_end
+    use, intrinsic :: iso_fortran_env, only : dp => real64
     use number_reader, only : read_number
-    use platform, only : is_directory
+    use printable_text, only : lower, printable
+    use whole_file, only : plain_text, read_whole_file
     implicit none
     private
 
-    public :: line_text, name_length, read_table, table
+    public :: column_request, line_text, read_table, read_table_text, table
 
-    integer, parameter :: name_length = 40
-    integer, parameter :: line_length = 4096
     integer, parameter :: most_faults = 20
+    character(len=1), parameter :: line_feed = new_line('a'), tab = achar(9)
+    character(len=*), parameter :: separators = tab // ';, '   ! in the order of preference
+
+    !> A column that the caller can use.
+    type :: column_request
+        character(len=:), allocatable :: name      !! as the caller calls it
+        character(len=:), allocatable :: title     !! in the file; empty: much like `name`
+        real(dp) :: factor = 1.0_dp                !! its numbers are multiplied by
+    end type column_request
 
     type :: line_text
         character(len=:), allocatable :: text
     end type line_text
 
     type :: table
-        character(len=name_length), allocatable :: names(:)   !! of the columns
+        type(line_text), allocatable :: names(:)              !! of the columns, as asked for
         real(dp), allocatable :: values(:, :)                 !! column, row
         integer, allocatable :: lines(:)                      !! of the file, one a row
         type(line_text), allocatable :: faults(:)             !! each with its line
+        integer :: header_line = 0                            !! with the names of the columns
     contains
         procedure :: column, add_fault
     end type table
 
+    !> How a file is written.
+    type :: file_form
+        character(len=1) :: separator = ','
+        integer :: header_line = 0
+        type(line_text), allocatable :: titles(:)     !! of the columns
+        integer :: least_cells = 0                    !! up to the last column with a name
+        integer, allocatable :: places(:)             !! of the columns asked for; 0: not there
+        integer :: mark = 0                           !! 1 decimal point, 2 comma; 0 none so far
+        integer :: mark_line = 0                      !! where the first one is
+        integer :: word_rows = 0                      !! rows of units or the like so far
+        integer :: empty_row = 0                      !! the last row of nothing but separators
+    end type file_form
+
+    !> The cells of a line.
+    type :: line_cells
+        integer :: n = 0
+        integer, allocatable :: first(:), last(:)     !! characters; room for `n` or more
+        logical :: sound = .true.                     !! all quotes are closed
+    end type line_cells
+
 contains
 
-    !> Takes a whole file; what is wrong with it is left in `read%faults`.
-    subroutine read_table(path, read_in)
+    !> Takes columns from a file; what is wrong with it is left in `read_in%faults`. Columns that
+    !> are not there are not in `read_in%names`, unless they were asked for by title: a fault.
+    subroutine read_table(path, requests, read_in)
         character(len=*), intent(in) :: path
+        type(column_request), intent(in) :: requests(:)
         type(table), intent(out) :: read_in
-        character(len=line_length) :: line
-        character(len=256) :: message
-        integer :: unit, status, number, rows
+        character(len=:), allocatable :: text, problem
 
-        allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
-        if (is_directory(path)) then
-            call read_in%add_fault(0, 'is a directory')
-            return
-        end if
-        open (newunit=unit, file=path, status='old', action='read', iostat=status, iomsg=message)
-        if (status /= 0) then
-            call read_in%add_fault(0, trim(message))
-            return
-        end if
-        number = 0
-        rows = 0
-        do
-            read (unit, '(a)', iostat=status, iomsg=message) line
-            if (status /= 0) exit
-            number = number + 1
-            if (number == 1 .and. line(:3) == char(239) // char(187) // char(191)) line = line(4:)
-            if (len_trim(line) == 0 .or. line(1:1) == '#') cycle
-            if (line(line_length:) /= ' ') then
-                call read_in%add_fault(number, 'the line is too long')
-            else if (size(read_in%names) == 0) then
-                if (scan(line, ';' // achar(9)) > 0 .and. index(line, ',') == 0) then
-                    call read_in%add_fault(number, 'the cells must be separated by commas')
-                    exit
-                end if
-                call take_header(line, read_in)
-            else
-                call take_row(line, number, rows, read_in)
-            end if
-            if (size(read_in%faults) > most_faults) exit
-        end do
-        if (status > 0) call read_in%add_fault(number, trim(message))
-        if (status == iostat_end .and. size(read_in%names) == 0) then
-            call read_in%add_fault(0, 'is empty')
-        end if
-        close (unit)
-        read_in%values = read_in%values(:, :rows)
-        read_in%lines = read_in%lines(:rows)
+        call read_whole_file(path, text, problem)
+        call take_text(text, problem, requests, read_in)
     end subroutine read_table
 
-    subroutine take_header(line, read_in)
-        character(len=*), intent(in) :: line
+    !> The same from a text in memory.
+    subroutine read_table_text(bytes, requests, read_in)
+        character(len=*), intent(in) :: bytes
+        type(column_request), intent(in) :: requests(:)
+        type(table), intent(out) :: read_in
+        character(len=:), allocatable :: text, problem
+
+        call plain_text(bytes, text, problem)
+        call take_text(text, problem, requests, read_in)
+    end subroutine read_table_text
+
+    subroutine take_text(text, problem, requests, read_in)
+        character(len=*), intent(in) :: text, problem
+        type(column_request), intent(in) :: requests(:)
         type(table), intent(inout) :: read_in
+        type(file_form) :: form
+        type(line_cells) :: cells
+        integer :: first, last, line, rows
+
+        allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
+        if (len(problem) > 0) then
+            call read_in%add_fault(0, problem)
+            return
+        end if
+        call find_header(text, requests, form, read_in)
+        if (size(read_in%faults) > 0) return
+        deallocate (read_in%values, read_in%lines)
+        allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
+        rows = 0
+        line = 0
+        last = -1
+        do while (last < len(text))
+            call next_line(text, first, last, line)
+            if (line <= form%header_line .or. is_no_row(text(first:last))) cycle
+            call split(text, first, last, form%separator, cells)
+            call take_row(text, line, requests, form, cells, rows, read_in)
+            if (size(read_in%faults) > most_faults) exit
+        end do
+        read_in%values = read_in%values(:, :rows)
+        read_in%lines = read_in%lines(:rows)
+    end subroutine take_text
+
+    !> Moves on to the next line.
+    pure subroutine next_line(text, first, last, line)
+        character(len=*), intent(in) :: text
+        integer, intent(out) :: first     !! character of the line
+        integer, intent(inout) :: last    !! of the line before, then of this one; -1 at the start
+        integer, intent(inout) :: line    !! number, from 1
+        integer :: length
+
+        first = last + 2
+        length = index(text(first:), line_feed) - 1
+        last = first + length - 1
+        if (length < 0) last = len(text)
+        line = line + 1
+    end subroutine next_line
+
+    !> Empty, or a comment.
+    pure function is_no_row(line) result(yes)
+        character(len=*), intent(in) :: line
+        logical :: yes
         integer :: i
 
-        deallocate (read_in%names, read_in%values, read_in%lines)
-        allocate (read_in%names(cells_in(line)))
-        do i = 1, size(read_in%names)
-            read_in%names(i) = cell(line, i)
-        end do
-        do i = 2, size(read_in%names)
-            if (any(read_in%names(:i - 1) == read_in%names(i))) call read_in%add_fault(0, &
-                "column '" // trim(read_in%names(i)) // "' is given twice")
-        end do
-        allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
-    end subroutine take_header
+        i = verify(line, ' ' // tab)
+        yes = i == 0
+        if (.not. yes) yes = scan(line(i:i), '#%') > 0
+    end function is_no_row
 
-    subroutine take_row(line, number, rows, read_in)
-        character(len=*), intent(in) :: line
-        integer, intent(in) :: number      !! of the line in the file
+    ! ---- the line of names -------------------------------------------------------------------
+
+    !> The first line that has two of the names asked for, or the only one; a comment only where no
+    !> other line has them. Failing that, the first line with one serves for messages.
+    subroutine find_header(text, requests, form, read_in)
+        character(len=*), intent(in) :: text
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(out) :: form
+        type(table), intent(inout) :: read_in
+        integer, parameter :: most_lines = 200
+        type(file_form) :: trial
+        integer :: best, rank, first, last, line, first_text, i
+        logical :: comment
+
+        best = 0
+        first_text = 0
+        line = 0
+        last = -1
+        do while (last < len(text) .and. line < most_lines .and. best <= size(requests))
+            call next_line(text, first, last, line)
+            i = verify(text(first:last), ' #%' // tab)
+            if (i == 0) cycle
+            comment = is_no_row(text(first:last))
+            if (comment) first = first + i - 1
+            if (first_text == 0 .and. .not. comment) first_text = line
+            do i = 1, len(separators)
+                trial%separator = separators(i:i)
+                trial%header_line = line
+                call read_titles(text, first, last, requests, trial)
+                rank = count(trial%places > 0)
+                if (rank >= min(2, size(requests))) then
+                    if (.not. comment) rank = rank + size(requests)
+                else if (comment) then
+                    rank = 0
+                end if
+                if (rank <= best) cycle
+                best = rank
+                form = trial
+            end do
+        end do
+        read_in%header_line = form%header_line
+        if (first_text == 0) then
+            call read_in%add_fault(0, 'is empty')
+        else if (best == 0) then
+            call read_in%add_fault(first_text, 'no line of column names is found from here on: ' &
+                // "column '" // title_of(requests(1)) // "' is missing")
+        else
+            call check_titles(requests, form, read_in)
+            call check_lines_before(text, form, read_in)
+        end if
+    end subroutine find_header
+
+    !> What a line is if it is the line of names.
+    subroutine read_titles(text, first, last, requests, form)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: first, last
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(inout) :: form
+        type(line_cells) :: cells
+        integer :: i
+
+        call split(text, first, last, form%separator, cells)
+        if (allocated(form%titles)) deallocate (form%titles, form%places)
+        allocate (form%titles(cells%n), form%places(size(requests)))
+        form%least_cells = 0
+        do i = 1, cells%n
+            form%titles(i)%text = text(cells%first(i):cells%last(i))
+            if (len(form%titles(i)%text) > 0) form%least_cells = i
+        end do
+        do i = 1, size(requests)
+            form%places(i) = sum(places_of(requests(i), form%titles, most=1))
+        end do
+    end subroutine read_titles
+
+    !> The columns that have the name asked for: as it is written if there is one, else without
+    !> regard to case, else without a unit behind it.
+    pure function places_of(request, titles, most) result(places)
+        type(column_request), intent(in) :: request
+        type(line_text), intent(in) :: titles(:)
+        integer, intent(in) :: most             !! places
+        integer, allocatable :: places(:)
+        character(len=:), allocatable :: wanted
+        integer :: strictness, i
+
+        places = [integer ::]
+        do strictness = 0, 2
+            wanted = simplified(title_of(request), strictness)
+            do i = 1, size(titles)
+                if (size(places) == most) return
+                if (simplified(titles(i)%text, strictness) == wanted &
+                    .and. len(titles(i)%text) > 0) places = [places, i]
+            end do
+            if (size(places) > 0) return
+        end do
+    end function places_of
+
+    pure function title_of(request) result(title)
+        type(column_request), intent(in) :: request
+        character(len=:), allocatable :: title
+
+        title = request%name
+        if (allocated(request%title)) then
+            if (len(request%title) > 0) title = request%title
+        end if
+    end function title_of
+
+    !> A name without its case, or without its unit either: `Time [s]`, `time (s)`, `Time/s`.
+    pure function simplified(title, strictness) result(name)
+        character(len=*), intent(in) :: title
+        integer, intent(in) :: strictness    !! 0 as it is; 1 no case; 2 no unit either
+        character(len=:), allocatable :: name
+        integer :: unit
+
+        name = title
+        if (strictness > 0) name = lower(name)
+        unit = scan(name, '[({/,')
+        if (strictness > 1 .and. unit > 1) name = trim(name(:unit - 1))
+    end function simplified
+
+    !> Names of several columns, and names asked for that are not there. Takes the others.
+    subroutine check_titles(requests, form, read_in)
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(in) :: form
+        type(table), intent(inout) :: read_in
+        character(len=:), allocatable :: title
+        type(line_text) :: name
+        integer, allocatable :: places(:)
+        integer :: i
+
+        do i = 1, size(requests)
+            title = title_of(requests(i))
+            if (form%places(i) == 0) then
+                if (title /= requests(i)%name) call read_in%add_fault(form%header_line, &
+                    "column '" // printable(title) // "' is missing: there are " &
+                    // list_of(form%titles))
+                cycle
+            end if
+            name%text = requests(i)%name
+            read_in%names = [read_in%names, name]
+            places = places_of(requests(i), form%titles, most=2)
+            if (size(places) < 2) cycle
+            associate (first => form%titles(places(1))%text, second => form%titles(places(2))%text)
+                if (first == second) then
+                    call read_in%add_fault(form%header_line, "column '" // printable(first) &
+                        // "' is given twice")
+                else
+                    call read_in%add_fault(form%header_line, "columns '" // printable(first) &
+                        // "' and '" // printable(second) // "' may both be " &
+                        // requests(i)%name // ': name one as it is written')
+                end if
+            end associate
+        end do
+    end subroutine check_titles
+
+    pure function list_of(titles) result(text)
+        type(line_text), intent(in) :: titles(:)
+        character(len=:), allocatable :: text
+        integer, parameter :: most = 400
+        integer :: i
+
+        text = "'" // printable(titles(1)%text) // "'"
+        do i = 2, size(titles)
+            text = text // ", '" // printable(titles(i)%text) // "'"
+            if (len(text) > most) exit
+        end do
+    end function list_of
+
+    !> Titles may stand before the names, numbers may not.
+    subroutine check_lines_before(text, form, read_in)
+        character(len=*), intent(in) :: text
+        type(file_form), intent(in) :: form
+        type(table), intent(inout) :: read_in
+        type(line_cells) :: cells
+        real(dp) :: value
+        integer :: first, last, line, i
+        logical :: is_number, too_small
+
+        last = -1
+        line = 0
+        do while (line < form%header_line - 1)
+            call next_line(text, first, last, line)
+            if (is_no_row(text(first:last))) cycle
+            call split(text, first, last, form%separator, cells)
+            is_number = cells%n > 1
+            do i = 1, cells%n
+                if (.not. is_number) exit
+                call read_number(text(cells%first(i):cells%last(i)), value, is_number, too_small)
+            end do
+            if (.not. is_number) cycle
+            call read_in%add_fault(line, 'numbers stand before the line of column names')
+            return
+        end do
+    end subroutine check_lines_before
+
+    ! ---- rows --------------------------------------------------------------------------------
+
+    subroutine take_row(text, line, requests, form, cells, rows, read_in)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: line        !! of the file
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(inout) :: form
+        type(line_cells), intent(in) :: cells
         integer, intent(inout) :: rows     !! taken so far
         type(table), intent(inout) :: read_in
-        character(len=name_length) :: word
-        integer :: i
-        logical :: ok, small
+        character(len=80) :: numbers
+        integer :: place, column, i
 
-        if (cells_in(line) /= size(read_in%names)) then
-            call read_in%add_fault(number, 'has not as many cells as the header')
+        if (.not. cells%sound) then
+            call read_in%add_fault(line, 'a quote is not closed')
+            return
+        else if (all(cells%last(:cells%n) < cells%first(:cells%n))) then
+            if (form%empty_row == 0) form%empty_row = line
+            return
+        else if (rows == 0 .and. form%word_rows < 2) then
+            if (holds_words_only(text, form, cells)) then
+                form%word_rows = form%word_rows + 1
+                return
+            end if
+        end if
+        if (form%empty_row > 0) call read_in%add_fault(form%empty_row, &
+            'the row is empty, and there are others behind it')
+        form%empty_row = 0
+        if (cells%n < form%least_cells .or. any(cells%last(size(form%titles) + 1:cells%n) &
+            >= cells%first(size(form%titles) + 1:cells%n))) then
+            write (numbers, '(a, i0, a, i0)') ': ', cells%n, ' for ', form%least_cells
+            if (form%separator == ',' .and. cells%n > form%least_cells) numbers = &
+                trim(numbers) // ' (cells with a decimal comma need quotes)'
+            call read_in%add_fault(line, 'has not as many cells as the header' // trim(numbers))
             return
         end if
         if (rows == size(read_in%lines)) call double_room(read_in)
         rows = rows + 1
-        read_in%lines(rows) = number
-        do i = 1, size(read_in%names)
-            word = cell(line, i)
-            call read_number(trim(word), read_in%values(i, rows), ok, small)
-            if (ok) ok = ieee_is_finite(read_in%values(i, rows))
-            if (ok) cycle
-            read_in%values(i, rows) = 0.0_dp
-            call read_in%add_fault(number, trim(read_in%names(i)) // " = '" // trim(word) &
-                // "': must be a finite number")
+        read_in%lines(rows) = line
+        column = 0
+        do i = 1, size(requests)
+            place = form%places(i)
+            if (place == 0) cycle
+            column = column + 1
+            call take_cell(text(cells%first(place):cells%last(place)), line, &
+                form%titles(place)%text, form, read_in%values(column, rows), read_in)
+            read_in%values(column, rows) = requests(i)%factor * read_in%values(column, rows)
         end do
     end subroutine take_row
+
+    !> A row of units or the like: none of its cells that count looks like a number.
+    pure function holds_words_only(text, form, cells) result(yes)
+        character(len=*), intent(in) :: text
+        type(file_form), intent(in) :: form
+        type(line_cells), intent(in) :: cells
+        logical :: yes
+        character(len=:), allocatable :: word
+        integer :: words, i
+
+        words = 0
+        do i = 1, size(form%places)
+            if (form%places(i) == 0 .or. form%places(i) > cells%n) cycle
+            word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
+            if (len(word) == 0) cycle
+            words = words + 1
+            yes = scan(word(1:1), '0123456789+-.,') == 0 &
+                .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
+            if (.not. yes) return
+        end do
+        yes = words > 0
+    end function holds_words_only
+
+    subroutine take_cell(word, line, title, form, value, read_in)
+        character(len=*), intent(in) :: word, title
+        integer, intent(in) :: line
+        type(file_form), intent(inout) :: form
+        real(dp), intent(out) :: value
+        type(table), intent(inout) :: read_in
+        character(len=len(word)) :: number
+        character(len=:), allocatable :: why
+        integer :: mark, comma
+        logical :: is_number, too_small
+
+        why = ''
+        number = word
+        mark = merge(1, 0, index(word, '.') > 0)
+        comma = index(word, ',')
+        if (comma > 0) then
+            number(comma:comma) = '.'
+            if (mark == 1) why = 'has a decimal point and a comma'
+            mark = 2
+        end if
+        if (form%mark == 0 .and. mark > 0) form%mark_line = line
+        if (form%mark == 0) form%mark = mark
+        call read_number(number, value, is_number, too_small)
+        if (is_number) is_number = ieee_is_finite(value)
+        if (len(word) == 0) then
+            why = 'must be a finite number, and the cell is empty'
+        else if (.not. is_number .and. len(why) == 0) then
+            why = 'must be a finite number'
+        else if (too_small) then
+            why = 'is smaller than any number here but 0'
+        else if (mark > 0 .and. mark /= form%mark .and. len(why) == 0) then
+            why = 'has a decimal ' // merge('point', 'comma', mark == 1) // ', and line ' &
+                // whole(form%mark_line) // ' has another mark'
+        end if
+        if (len(why) == 0) return
+        value = 0.0_dp
+        call read_in%add_fault(line, printable(title) // " = '" // printable(word) // "': " // why)
+    end subroutine take_cell
 
     subroutine double_room(read_in)
         type(table), intent(inout) :: read_in
@@ -136,41 +463,107 @@ contains
         call move_alloc(lines, read_in%lines)
     end subroutine double_room
 
-    pure function cells_in(line) result(n)
-        character(len=*), intent(in) :: line
-        integer :: n
-        integer :: i
+    ! ---- cells -------------------------------------------------------------------------------
 
-        n = 1
-        do i = 1, len_trim(line)
-            if (line(i:i) == ',') n = n + 1
-        end do
-    end function cells_in
+    !> The cells of a line, without the blanks and the quotes around them. A blank that separates
+    !> stands for any number of blanks and tabs.
+    pure subroutine split(text, first, last, separator, cells)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: first, last              !! characters of the line
+        character(len=1), intent(in) :: separator
+        type(line_cells), intent(inout) :: cells
+        integer :: at, cell_end, next
 
-    !> The i-th cell of a line, without the blanks, tabs and carriage returns around it.
-    pure function cell(line, i) result(word)
-        character(len=*), intent(in) :: line
-        integer, intent(in) :: i
-        character(len=name_length) :: word
-        integer :: first, last, comma, k
+        cells%n = 0
+        cells%sound = .true.
+        at = first
+        do
+            do while (at <= last)   ! blanks before the cell
+                if (.not. is_blank(text(at:at)) .or. text(at:at) == tab .and. separator == tab) exit
+                at = at + 1
+            end do
+            if (separator == ' ' .and. at > last) exit
+            call find_end(text, at, last, separator, cell_end, next, cells%sound)
+            call add_cell(cells, at, cell_end)
+            if (next > last) exit
+            at = next + 1
+        end do
+    end subroutine split
 
-        first = 1
-        do k = 1, i - 1
-            first = first + index(line(first:), ',')
+    !> Where does the cell that starts at `at` end?
+    pure subroutine find_end(text, at, last, separator, cell_end, next, sound)
+        character(len=*), intent(in) :: text
+        integer, intent(inout) :: at            !! start of the cell; of what is in its quotes
+        integer, intent(in) :: last             !! character of the line
+        character(len=1), intent(in) :: separator
+        integer, intent(out) :: cell_end
+        integer, intent(out) :: next            !! separator behind it, or behind the line
+        logical, intent(inout) :: sound
+        integer :: quote
+        logical :: quoted
+
+        quoted = .false.
+        if (at <= last) quoted = text(at:at) == '"'
+        next = at
+        if (quoted) then
+            at = at + 1
+            quote = closing_quote(text, at, last)
+            sound = sound .and. quote <= last
+            next = quote + 1
+        end if
+        do while (next <= last)
+            if (text(next:next) == separator) exit
+            if (separator == ' ' .and. text(next:next) == tab) exit
+            if (quoted) sound = sound .and. is_blank(text(next:next))
+            next = next + 1
         end do
-        comma = index(line(first:), ',')
-        last = len_trim(line)
-        if (comma > 0) last = first + comma - 2
-        do while (first < last)
-            if (iachar(line(first:first)) > 32) exit
-            first = first + 1
+        cell_end = next - 1
+        if (quoted) cell_end = quote - 1
+        do while (cell_end >= at)
+            if (.not. is_blank(text(cell_end:cell_end))) exit
+            cell_end = cell_end - 1
         end do
-        do while (last >= first)
-            if (iachar(line(last:last)) > 32) exit
-            last = last - 1
+    end subroutine find_end
+
+    !> The quote that ends a text; two in a row belong to it. Behind the line if there is none.
+    pure function closing_quote(text, from, last) result(place)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: from, last
+        integer :: place
+
+        place = from
+        do while (place <= last)
+            if (text(place:place) == '"') then
+                if (place == last) return
+                if (text(place + 1:place + 1) /= '"') return
+                place = place + 1
+            end if
+            place = place + 1
         end do
-        word = line(first:last)
-    end function cell
+    end function closing_quote
+
+    pure function is_blank(c) result(blank)
+        character(len=1), intent(in) :: c
+        logical :: blank
+
+        blank = c == ' ' .or. c == tab
+    end function is_blank
+
+    pure subroutine add_cell(cells, first, last)
+        type(line_cells), intent(inout) :: cells
+        integer, intent(in) :: first, last
+
+        if (.not. allocated(cells%first)) allocate (cells%first(16), cells%last(16))
+        if (cells%n == size(cells%first)) then
+            cells%first = [cells%first, cells%first]
+            cells%last = [cells%last, cells%last]
+        end if
+        cells%n = cells%n + 1
+        cells%first(cells%n) = first
+        cells%last(cells%n) = last
+    end subroutine add_cell
+
+    ! ---- the table ---------------------------------------------------------------------------
 
     !> Place of a column; 0 if there is none of that name.
     pure function column(self, name) result(i)
@@ -179,25 +572,31 @@ contains
         integer :: i
 
         do i = size(self%names), 1, -1
-            if (self%names(i) == name) return
+            if (self%names(i)%text == name) return
         end do
     end function column
 
     !> Notes a fault in a line; line 0 is the file as a whole.
-    subroutine add_fault(self, line, text)
+    pure subroutine add_fault(self, line, text)
         class(table), intent(inout) :: self
         integer, intent(in) :: line
         character(len=*), intent(in) :: text
-        character(len=20) :: place
         type(line_text) :: new
 
         if (size(self%faults) > most_faults) return
-        place = ''
-        if (line > 0) write (place, '(a, i0, a)') 'line ', line, ': '
-        new%text = trim(place) // ' ' // text
-        if (line == 0) new%text = text
+        new%text = text
+        if (line > 0) new%text = 'line ' // whole(line) // ': ' // text
         if (size(self%faults) == most_faults) new%text = 'and more faults'
         self%faults = [self%faults, new]
     end subroutine add_fault
+
+    pure function whole(number) result(text)
+        integer, intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=12) :: buffer
+
+        write (buffer, '(i0)') number
+        text = trim(buffer)
+    end function whole
 
 end module csv_table

@@ -1,7 +1,8 @@
 !> The group &drive of the input file: the loading programme, from lists or from a file.
 module drive_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use csv_table, only : read_table, table
+    use column_keys, only : read_column_keys, refuse_column_keys
+    use csv_table, only : column_request, read_table, table
     use loading_programme, only : programme
     use namelist_input, only : any_number, at_least, above, namelist_file
     implicit none
@@ -10,6 +11,8 @@ module drive_reader
     public :: read_drive
 
     character(len=*), parameter :: group = 'drive'
+    character(len=12), parameter :: columns(4) = [character(len=12) :: 'time', 'velocity', &
+        'displacement', 'normal']
 
 contains
 
@@ -25,6 +28,7 @@ contains
             call read_drive_file(file, path, normal_traction, drive)
         else
             call read_drive_lists(file, normal_traction, drive)
+            call refuse_column_keys(file, group, columns)
         end if
         call read_oscillation(file, drive)
     end subroutine read_drive
@@ -126,41 +130,54 @@ contains
         character(len=*), intent(in) :: path      !! as in the input file, relative to it
         real(dp), intent(in) :: normal_traction   !! where the file gives none [F/L^2]
         type(programme), intent(out) :: drive
-        character(len=8), parameter :: lists(4) = ['velocity', 'duration', 'normal  ', 'change  ']
+        character(len=13), parameter :: lists(4) = [character(len=13) :: 'velocity', 'duration', &
+            'normal', 'normal_change']
+        type(column_request), allocatable :: requests(:)
         type(table) :: rows
-        character(len=:), allocatable :: key
-        integer :: i
+        integer :: faults_before, i
 
+        faults_before = size(file%faults)
         do i = 1, size(lists)
-            key = trim(lists(i))
-            if (key == 'change') key = 'normal_change'
-            if (file%given(group, key)) call file%reject(group, key, 'cannot stand beside file')
+            if (file%given(group, trim(lists(i)))) call file%reject(group, trim(lists(i)), &
+                'cannot stand beside file')
         end do
+        call read_column_keys(file, group, columns, requests)
         if (len(path) == 0) return
-        call read_table(beside(file%name, path), rows)
-        if (size(rows%faults) == 0) call check_columns(rows)
+        if (file%given(group, 'velocity_column')) then
+            if (file%given(group, 'displacement_column')) call file%reject(group, &
+                'displacement_column', 'cannot stand beside velocity_column')
+            requests = requests([1, 2, 4])
+        else if (file%given(group, 'displacement_column')) then
+            requests = requests([1, 3, 4])
+        end if
+        call read_table(file%beside(path), requests, rows)
+        if (size(rows%faults) == 0) call check_columns(file, rows)
         if (size(rows%faults) == 0) call check_rows(rows)
         do i = 1, size(rows%faults)
             call file%reject(group, 'file', rows%faults(i)%text)
         end do
-        if (size(rows%faults) == 0) call take_rows(rows, normal_traction, drive)
+        if (size(file%faults) == faults_before) call take_rows(rows, normal_traction, drive)
     end subroutine read_drive_file
 
-    subroutine check_columns(rows)
+    subroutine check_columns(file, rows)
+        type(namelist_file), intent(in) :: file
         type(table), intent(inout) :: rows
         integer :: i
 
-        do i = 1, size(rows%names)
-            if (all(rows%names(i) /= ['time        ', 'velocity    ', 'displacement', &
-                'normal      '])) then
-                call rows%add_fault(1, "column '" // trim(rows%names(i)) // "' is none of time, " &
-                    // 'velocity, displacement, normal')
-            end if
-        end do
-        if (rows%column('time') == 0) call rows%add_fault(1, "column 'time' is missing")
-        if (rows%column('velocity') == 0 .eqv. rows%column('displacement') == 0) then
-            call rows%add_fault(1, "takes one of the columns 'velocity' and 'displacement'")
+        if (rows%column('time') == 0) call rows%add_fault(rows%header_line, &
+            "column 'time' is missing")
+        if (rows%column('velocity') == 0 .and. rows%column('displacement') == 0) then
+            call rows%add_fault(rows%header_line, "needs one of the columns 'velocity' and " &
+                // "'displacement'")
+        else if (rows%column('velocity') > 0 .and. rows%column('displacement') > 0) then
+            call rows%add_fault(rows%header_line, "takes one of the columns 'velocity' and " &
+                // "'displacement': choose by velocity_column or displacement_column")
         end if
+        do i = 1, size(columns)
+            if (rows%column(trim(columns(i))) > 0) cycle
+            if (file%given(group, trim(columns(i)) // '_factor')) call rows%add_fault( &
+                rows%header_line, "no column '" // trim(columns(i)) // "' for its factor")
+        end do
         if (size(rows%lines) < 2) call rows%add_fault(0, 'has fewer than two rows of numbers')
     end subroutine check_columns
 
@@ -170,9 +187,6 @@ contains
 
         time = rows%column('time')
         normal = rows%column('normal')
-        if (abs(rows%values(time, 1)) > 0.0_dp) then
-            call rows%add_fault(rows%lines(1), 'time must start at 0')
-        end if
         do i = 2, size(rows%lines)
             if (rows%values(time, i) > rows%values(time, i - 1)) cycle
             call rows%add_fault(rows%lines(i), 'time must be larger than in the row before')
@@ -184,8 +198,8 @@ contains
         end do
     end subroutine check_rows
 
-    !> After the last row its velocity and its normal traction go on; after a last displacement the
-    !> drive stands still.
+    !> Time counts from the first row. After the last row its velocity and its normal traction go
+    !> on; after a last displacement the drive stands still.
     subroutine take_rows(rows, normal_traction, drive)
         type(table), intent(in) :: rows
         real(dp), intent(in) :: normal_traction
@@ -193,7 +207,7 @@ contains
         integer :: n
 
         n = size(rows%lines)
-        drive%start = rows%values(rows%column('time'), :)
+        drive%start = rows%values(rows%column('time'), :) - rows%values(rows%column('time'), 1)
         if (rows%column('velocity') > 0) then
             drive%velocity = rows%values(rows%column('velocity'), :)
             drive%acceleration = rate_of(drive%velocity)
@@ -220,15 +234,6 @@ contains
         end function rate_of
 
     end subroutine take_rows
-
-    !> A path as seen from the directory of a file.
-    pure function beside(file, path) result(full)
-        character(len=*), intent(in) :: file, path
-        character(len=:), allocatable :: full
-
-        full = path
-        if (path(1:1) /= '/') full = file(:index(file, '/', back=.true.)) // path
-    end function beside
 
     pure function counted(n) result(text)
         integer, intent(in) :: n

@@ -40,7 +40,7 @@ module namelist_input
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
         procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
-        procedure :: line_of_group, belongs_elsewhere
+        procedure :: line_of_group, belongs_elsewhere, beside
         procedure :: substitute, value_of, remove, listing
     end type namelist_file
 
@@ -115,6 +115,16 @@ contains
             if (self%groups(i)%name == group) line = self%groups(i)%line
         end do
     end function line_of_group
+
+    !> A path as seen from the directory of the file.
+    pure function beside(self, path) result(full)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: path   !! not empty
+        character(len=:), allocatable :: full
+
+        full = path
+        if (path(1:1) /= '/') full = self%name(:index(self%name, '/', back=.true.)) // path
+    end function beside
 
     !> Is the key in the file?
     pure function given(self, group, key) result(found)

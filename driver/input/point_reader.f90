@@ -2,7 +2,8 @@
 !> rules.
 module point_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use csv_table, only : csv => table, name_length, read_table
+    use column_keys, only : read_column_keys, refuse_column_keys
+    use csv_table, only : column_request, csv => table, read_table
     use law_input, only : read_friction
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
@@ -16,6 +17,8 @@ module point_reader
     character(len=2), parameter :: directions(3) = ['n ', 't1', 't2']
     character(len=10), parameter :: segment_keys(8) = [character(len=10) :: 'duration', 'steps', &
         'control_n', 'control_t1', 'control_t2', 'target_n', 'target_t1', 'target_t2']
+    character(len=4), parameter :: columns(7) = ['time', 'u_n ', 't_n ', 'u_t1', 't_t1', 'u_t2', &
+        't_t2']
     character(len=12), parameter :: controls(2) = ['displacement', 'traction    ']
     integer, parameter :: by_displacement = 1   !! place in `controls`
 
@@ -121,85 +124,135 @@ contains
         type(namelist_file), intent(inout) :: file
         type(path), intent(inout) :: loading
         character(len=:), allocatable :: name
+        type(column_request), allocatable :: requests(:)
         type(csv) :: table
-        integer :: substeps, i
+        integer :: faults_before, substeps, i
 
+        faults_before = size(file%faults)
         call file%get_text(group, 'file', name)
         call file%get_integer(group, 'substeps', substeps, at_least(1.0_dp), default=1)
         if (.not. file%given(group, 'file')) then
             call refuse(file, 'substeps', 'needs a file')
+            call refuse_column_keys(file, group, columns)
             return
         end if
         do i = 1, size(segment_keys)
             call refuse(file, trim(segment_keys(i)), 'must not be given beside file')
         end do
+        call read_column_keys(file, group, columns(:2 * loading%ndir + 1), requests)
+        do i = 2, size(requests), 2
+            if (file%given(group, trim(columns(i)) // '_column')) call refuse(file, &
+                trim(columns(i + 1)) // '_column', 'cannot stand beside ' // trim(columns(i)) &
+                // '_column')
+        end do
         if (len(name) == 0) return
-        if (name(1:1) /= '/') name = file%name(:index(file%name, '/', back=.true.)) // name
-        call read_table(name, table)
-        if (size(table%faults) == 0) call take_table(table, substeps, loading)
+        requests = pack(requests, [(wanted(i), i = 1, size(requests))])
+        call read_table(file%beside(name), requests, table)
+        if (size(table%faults) == 0) call check_columns(file, loading%ndir, table)
+        if (size(table%faults) == 0) call check_times(table)
         do i = 1, size(table%faults)
             call file%reject(group, 'file', table%faults(i)%text)
         end do
+        if (size(file%faults) == faults_before) call take_table(table, substeps, loading)
+
+    contains
+
+        !> A column that is named is taken in place of its partner, `u_n` and `t_n` and so on.
+        pure logical function wanted(i)
+            integer, intent(in) :: i
+            integer :: partner
+
+            partner = i + 1 - 2 * mod(i, 2)
+            wanted = i == 1
+            if (.not. wanted) wanted = .not. file%given(group, trim(columns(partner)) // '_column')
+        end function wanted
+
     end subroutine read_file
 
-    !> Each row is a segment: the columns `u_n` or `t_n`, and so on, tell what is controlled.
-    subroutine take_table(table, substeps, loading)
+    subroutine check_columns(file, ndir, table)
+        type(namelist_file), intent(in) :: file
+        integer, intent(in) :: ndir
         type(csv), intent(inout) :: table
-        integer, intent(in) :: substeps   !! increments to a row
-        type(path), intent(inout) :: loading
-        integer :: time, places(loading%ndir), first, n, i
-        logical :: tractions(loading%ndir)
+        character(len=:), allocatable :: pair
+        integer :: i, u, t
 
+        if (table%column('time') == 0) call table%add_fault(table%header_line, &
+            "must have a column 'time'")
+        do i = 1, ndir
+            u = table%column('u_' // trim(directions(i)))
+            t = table%column('t_' // trim(directions(i)))
+            pair = "'u_" // trim(directions(i)) // "' or 't_" // trim(directions(i)) // "'"
+            if (u == 0 .and. t == 0) call table%add_fault(table%header_line, &
+                'must have a column ' // pair)
+            if (u > 0 .and. t > 0) call table%add_fault(table%header_line, 'must have a column ' &
+                // pair // ', and not both: choose one by its key, u_' // trim(directions(i)) &
+                // '_column or t_' // trim(directions(i)) // '_column')
+        end do
+        do i = 1, 2 * ndir + 1
+            if (table%column(trim(columns(i))) > 0) cycle
+            if (file%given(group, trim(columns(i)) // '_factor')) call table%add_fault( &
+                table%header_line, "no column '" // trim(columns(i)) // "' for its factor")
+        end do
         if (size(table%lines) == 0) call table%add_fault(0, &
             'must hold rows of numbers below the names')
-        call find_columns(table, loading%ndir, time, places, tractions)
-        if (size(table%faults) > 0) return
-        if (table%values(time, 1) < 0.0_dp) call table%add_fault(table%lines(1), &
-            'time must be >= 0')
+    end subroutine check_columns
+
+    subroutine check_times(table)
+        type(csv), intent(inout) :: table
+        integer :: time, i
+
+        time = table%column('time')
+        if (starts_at_rest(table)) then
+            if (size(table%lines) == 1) call table%add_fault(table%lines(1), &
+                'there is nothing but the starting point')
+        else if (table%values(time, 1) < 0.0_dp) then
+            call table%add_fault(table%lines(1), 'time must be >= 0')
+        end if
         do i = 2, size(table%lines)
             if (table%values(time, i) < table%values(time, i - 1)) call table%add_fault( &
                 table%lines(i), 'time must not go back')
         end do
-        if (size(table%faults) > 0) return
+    end subroutine check_times
 
-        first = 1   ! a row of zeros is where every path starts
-        if (.not. any(abs(table%values([time, places], 1)) > 0.0_dp)) first = 2
+    !> Is the first row, of zeros but for its time, where every path starts?
+    pure function starts_at_rest(table) result(yes)
+        type(csv), intent(in) :: table
+        logical :: yes
+        integer :: i
+
+        yes = .true.
+        do i = 1, size(table%names)
+            if (i /= table%column('time')) yes = yes .and. .not. abs(table%values(i, 1)) > 0.0_dp
+        end do
+    end function starts_at_rest
+
+    !> Each row is a segment: the columns `u_n` or `t_n`, and so on, tell what is controlled. Time
+    !> counts from the starting point if the table has it, else from 0.
+    subroutine take_table(table, substeps, loading)
+        type(csv), intent(in) :: table
+        integer, intent(in) :: substeps   !! increments to a row
+        type(path), intent(inout) :: loading
+        integer :: places(loading%ndir), first, n, i
+        logical :: tractions(loading%ndir)
+        real(dp), allocatable :: time(:)
+
+        do i = 1, loading%ndir
+            places(i) = table%column('t_' // trim(directions(i)))
+            tractions(i) = places(i) > 0
+            if (places(i) == 0) places(i) = table%column('u_' // trim(directions(i)))
+        end do
+        time = table%values(table%column('time'), :)
+        first = 1
+        if (starts_at_rest(table)) then
+            first = 2
+            time = time - time(1)
+        end if
         n = size(table%lines) - first + 1
-        if (n == 0) call table%add_fault(table%lines(1), 'there is nothing but the starting point')
-        loading%duration = table%values(time, first:size(table%lines))   ! the start is at time 0
+        loading%duration = time(first:)
         loading%duration(2:) = loading%duration(2:) - loading%duration(:n - 1)
         loading%steps = [(substeps, i = 1, n)]
         loading%by_traction = spread(tractions, 2, n)
-        loading%target = table%values(places, first:size(table%lines))
+        loading%target = table%values(places, first:)
     end subroutine take_table
-
-    subroutine find_columns(table, ndir, time, places, tractions)
-        type(csv), intent(inout) :: table
-        integer, intent(in) :: ndir
-        integer, intent(out) :: time            !! its column
-        integer, intent(out) :: places(ndir)    !! columns of the directions
-        logical, intent(out) :: tractions(ndir) !! they hold tractions
-        character(len=name_length) :: known(2 * ndir + 1)
-        integer :: i, u, t
-
-        known(1) = 'time'
-        time = table%column('time')
-        if (time == 0) call table%add_fault(0, "must have a column 'time'")
-        do i = 1, ndir
-            known(2 * i) = 'u_' // directions(i)
-            known(2 * i + 1) = 't_' // directions(i)
-            u = table%column(trim(known(2 * i)))
-            t = table%column(trim(known(2 * i + 1)))
-            places(i) = max(u, t)
-            tractions(i) = t > 0
-            if ((u > 0) .neqv. (t > 0)) cycle
-            call table%add_fault(0, "must have a column '" // trim(known(2 * i)) // "' or '" &
-                // trim(known(2 * i + 1)) // "', and not both")
-        end do
-        do i = 1, size(table%names)
-            if (any(known == table%names(i))) cycle
-            call table%add_fault(0, "unknown column '" // trim(table%names(i)) // "'")
-        end do
-    end subroutine find_columns
 
 end module point_reader

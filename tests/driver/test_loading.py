@@ -38,6 +38,50 @@ class Programme(Columns):
             namelist({('drive', 'file'): "'load.csv'"}, without=[('drive', 'velocity')]))
         self.assertEqual(self.run_program('check', 'deep/case.nml').returncode, 0)
 
+    PLAIN = 'time,displacement,normal\n0,0,10\n0.05,0.05,10\n0.1,0.2,20\n'
+
+    def test_tables_are_read_as_rigs_and_spreadsheets_write_them(self):
+        expected = self.run_columns(self.with_file(self.PLAIN))
+        for content in (
+                self.PLAIN.replace(',', ';'), self.PLAIN.replace(',', '\t'), self.PLAIN.replace(',', '   '),
+                self.PLAIN.replace(',', ';').replace('.', ','), self.PLAIN.replace('\n', '\r\n'), '\ufeff' + self.PLAIN,
+                'time,force,displacement,normal\n0,x,0,10\n0.05,,0.05,10\n0.1,7,0.2,20\n',
+                '"time","displacement","normal"\n"0","0","10"\n"0,05","0,05","10"\n"0,1","0,2","20"\n',
+                'Rig 7, operator X\nDate: 2024-01-01\n' + self.PLAIN,
+                '# a\n% b\n\n' + self.PLAIN.replace('\n0.05', '\n# c\n0.05'), '# ' + self.PLAIN, '%' + self.PLAIN.replace(',', ' '),
+                'Time [s],DISPLACEMENT (mm),Normal/MPa\n[s],mm,MPa\n' + self.PLAIN.split('\n', 1)[1],
+                'time,displacement,normal\nTest,Test,Test\ns,mm,\n' + self.PLAIN.split('\n', 1)[1],
+                'time,displacement,normal,\n12.5,3,10,\n12.55,3.05,10,\n12.6,3.2,20,\n,,,\n,,,\n',
+                'time,displacement,normal\n-1e1,0,1D1\n-9.95,0.05,+10.\n-9.9,.2,20,,\n'):
+            run = self.run_columns(self.with_file(content))
+            for key in ('drive', 'displacement', 'friction_force'):
+                for a, b in zip(run[key], expected[key]):
+                    self.assertAlmostEqual(a, b, delta=1e-9, msg=content)   # round-off of times that start elsewhere
+
+    def test_utf_16_is_read(self):
+        expected = self.run_columns(self.with_file(self.PLAIN))
+        for code in ('utf-16-le', 'utf-16-be'):
+            text = self.with_file(self.PLAIN)
+            (self.folder / 'load.csv').write_bytes(('\ufeff# \u00b5m \U0001f600\n' + self.PLAIN).encode(code))
+            self.assertEqual(self.run_columns(text), expected)
+
+    def test_columns_and_factors_are_chosen_by_keys(self):
+        expected = self.run_columns(self.with_file(self.PLAIN))
+        content = ('Zeit;time;Weg;velocity;displacement;Kraft\n5000;0;0;9;9;-10000\n5050;0;50;9;9;-10000\n'
+                   '5100;0;200;9;9;-20000\n')
+        run = self.run_columns(self.with_file(
+            content, (('drive', 'time_column'), "'Zeit'"), (('drive', 'time_factor'), '1e-3'),
+            (('drive', 'displacement_column'), "'Weg'"), (('drive', 'displacement_factor'), '1e-3'),
+            (('drive', 'normal_column'), "'kraft'"), (('drive', 'normal_factor'), '-1e-3')))
+        for key in ('time', 'drive', 'displacement', 'friction_force'):
+            for a, b in zip(run[key], expected[key]):
+                self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def test_a_long_table_is_read_to_its_end(self):
+        rows = ''.join(f'{k}.5,1.25,7.5\n' for k in range(200000))
+        text = self.with_file('time,velocity,normal\n' + rows + '1e9,x,1\n')
+        self.assertIn("line 200002: velocity = 'x'", self.run_text(text, verb='check').stderr)
+
     def normal_traction(self, text):
         """Sliding blocks show the normal traction: friction / (R mu)."""
         run = self.run_columns(text)
@@ -418,21 +462,48 @@ class BadProgramme(Columns):
         for content, said in (
                 ('', 'is empty'),
                 ('time,velocity\n', 'fewer than two rows'),
-                ('time;velocity\n0;1\n1;1\n', 'line 1: the cells must be separated by commas'),
-                ('time,speed\n0,1\n1,1\n', "line 1: column 'speed' is none of"),
+                ('time,speed\n0,1\n1,1\n', "line 1: needs one of the columns 'velocity' and 'displacement'"),
                 ('time,velocity,time\n0,1,0\n1,1,1\n', "column 'time' is given twice"),
                 ('velocity,normal\n0,1\n1,1\n', "line 1: column 'time' is missing"),
                 ('time,normal\n0,1\n1,1\n', "one of the columns 'velocity' and 'displacement'"),
-                ('time,velocity\n0,1\n1\n', 'line 3: has not as many cells as the header'),
+                ('time,velocity,displacement\n0,1,0\n1,1,1\n', 'choose by velocity_column or displacement_column'),
+                ('speed\n0\n', "line 1: no line of column names is found from here on: column 'time' is missing"),
+                ('0,1\n1,1\n', 'line 1: no line of column names'),
+                ('0,1\ntime,velocity\n1,1\n2,1\n', 'line 1: numbers stand before the line of column names'),
+                ('time [s],time [min],velocity\n0,0,1\n1,1,1\n', "line 1: columns 'time [s]' and 'time [min]' may both"),
+                ('time,velocity\n0,1\n1\n', 'line 3: has not as many cells as the header: 1 for 2'),
+                ('time,velocity\n0,1\n1,1,5\n', 'line 3: has not as many cells as the header: 3 for 2'),
+                ('time,velocity\n0,0,1\n1,1,5\n', 'line 2: has not as many cells as the header: 3 for 2 (cells with a dec'),
+                ('time,velocity\n0,1\n,,\n2,1\n', 'line 3: the row is empty, and there are others behind it'),
+                ('time,velocity,x\n0,1,\n1,,2\n', "line 3: velocity = '': must be a finite number, and the cell is empty"),
+                ('time,velocity\n0,1\n1,1e-999\n', "line 3: velocity = '1e-999': is smaller than any number"),
+                ('time,velocity\n0,1\n1,1\x00\n', 'line 3: holds a character 0'),
+                ('time,velocity\n0,1\n1,"1\n2,1\n', 'line 3: a quote is not closed'),
+                ('time;velocity\n0;0,5\n1;0.5\n', "line 3: velocity = '0.5': has a decimal point, and line 2 has"),
+                ('time;velocity\n0;0\n1;1.000,5\n', "line 3: velocity = '1.000,5': has a decimal point and a comma"),
+                ('time,velocity\n0,1\n1,1 mm/s\n', "line 3: velocity = '1 mm/s': must be a finite number"),
+                ('time,velocity\n0,1\n1,2\ntime,velocity\n0,1\n', "line 4: time = 'time': must be a finite number"),
                 ('time,velocity\n0,1\n1,fast\n', "line 3: velocity = 'fast': must be a finite number"),
                 ('time,velocity\n0,1\nNaN,1\n', "line 3: time = 'NaN': must be a finite number"),
                 ('time,velocity\n0,1\n1,1e999\n', "line 3: velocity = '1e999'"),
                 ('time,velocity\n0,1\n1,\n', "line 3: velocity = ''"),
-                ('time,velocity\n0.5,1\n1,1\n', 'line 2: time must start at 0'),
                 ('time,velocity\n0,1\n1,1\n1,2\n', 'line 4: time must be larger'),
                 ('time,velocity,normal\n0,1,1\n1,1,-1\n', 'line 3: normal must be >= 0'),
-                ('time,velocity\n0,' + '1' * 5000 + '\n', 'line 2: the line is too long')):
+                ('time,velocity\n0,' + '1' * 5000 + '\n', "line 2: velocity = '1111")):
             self.refused(self.with_file(content), '&drive file', said)
+
+    def test_columns_that_are_asked_for_must_be_there(self):
+        content = 'Zeit;Weg\n0;0\n1;1\n'
+        self.refused(self.with_file(content, (('drive', 'time_column'), "'Zeit'"), (('drive', 'displacement_column'), "'Pfad'")),
+                     "line 1: column 'Pfad' is missing: there are 'Zeit', 'Weg'")
+        self.refused(self.with_file(content, (('drive', 'time_column'), "'Zeit'"), (('drive', 'displacement_column'), "'weg'"),
+                                    (('drive', 'normal_factor'), '2')), "line 1: no column 'normal' for its factor")
+        self.refused(self.with_file(content, (('drive', 'velocity_column'), "'Weg'"), (('drive', 'displacement_column'), "'Weg'"),
+                                    (('drive', 'time_factor'), '0')),
+                     "&drive displacement_column = 'Weg': cannot stand beside velocity_column",
+                     '&drive time_factor = 0: must be a number other than 0')
+        self.refused(namelist({('drive', 'time_column'): "'t'", ('drive', 'normal_factor'): '2'}),
+                     "&drive time_column = 't': needs a file", '&drive normal_factor = 2: needs a file')
 
     def test_every_fault_of_a_file_is_listed_up_to_a_screenful(self):
         result = self.run_text(self.with_file('time,velocity\n' + 'x,y\n' * 100), verb='check')

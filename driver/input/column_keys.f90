@@ -1,0 +1,49 @@
+!> The keys of a group that choose the columns of a table: for a column `time` they are
+!> `time_column`, its name in the file, and `time_factor`, by which its numbers are multiplied.
+module column_keys
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use csv_table, only : column_request
+    use namelist_input, only : namelist_file, not_zero
+    implicit none
+    private
+
+    public :: read_column_keys, refuse_column_keys
+
+contains
+
+    !> Every fault is left in `file%faults`.
+    subroutine read_column_keys(file, group, names, requests)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group
+        character(len=*), intent(in) :: names(:)   !! of the columns that the group can use
+        type(column_request), allocatable, intent(out) :: requests(:)
+        character(len=:), allocatable :: name
+        integer :: i
+
+        allocate (requests(size(names)))
+        do i = 1, size(names)
+            name = trim(names(i))
+            requests(i)%name = name
+            call file%get_text(group, name // '_column', requests(i)%title)
+            call file%get_real(group, name // '_factor', requests(i)%factor, not_zero(), &
+                default=1.0_dp)
+        end do
+    end subroutine read_column_keys
+
+    !> Without a file there are no columns.
+    subroutine refuse_column_keys(file, group, names)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group
+        character(len=*), intent(in) :: names(:)
+        character(len=7), parameter :: ends(2) = ['_column', '_factor']
+        integer :: i, k
+
+        do i = 1, size(names)
+            do k = 1, size(ends)
+                if (file%given(group, trim(names(i)) // ends(k))) call file%reject(group, &
+                    trim(names(i)) // ends(k), 'needs a file')
+            end do
+        end do
+    end subroutine refuse_column_keys
+
+end module column_keys
