@@ -60,6 +60,24 @@ int friction_update_batch(int64_t n, int ndir, const double *du, double dtime, i
 int friction_update_points(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
                            int nstatv, double *statev, double *traction, double *tangent, int *status);
 
+/* Slip rates of n points without a contact spring: v >= 0 with tau - damping v = friction(v, internal, pressure),
+ * and the rate of the internal variable at that v. For rate-and-state friction (law 4) alone; others get
+ * FRICTION_BAD_LAW.
+ *   tau            magnitudes of the tangential traction, >= 0, n numbers [F/L^2]
+ *   pressure       >= 0, n numbers [F/L^2]
+ *   damping        radiation damping, >= 0, e.g. G/(2 c_s) [F T/L^3]
+ *   nprops, props  constants of each point as in friction_update, 8 or more; constant k of point i is
+ *                  props[k*n + i]; the springs alpha_n and alpha_t are not used
+ *   internal       theta, > 0, n numbers [T]
+ *   rate           v, n numbers [L/T]
+ *   internal_rate  d(theta)/dt, n numbers [-]
+ *   status         a friction_status for each point; bad input at a point leaves its results untouched and harms
+ *                  no other point. FRICTION_NO_CONVERGENCE: a slip rate beyond the range of the arithmetic
+ * Threads and the value returned as in friction_update_batch. */
+int friction_slip_rates(int64_t n, const double *tau, const double *pressure, double damping, int nprops,
+                        const double *props, const double *internal, double *rate, double *internal_rate,
+                        int *status);
+
 /* The tangential part alone, for hosts that hand in the pressure.
  *   ndir      tangential components: 1 or 2
  *   du        increment of tangential displacement, ndir numbers [L]

@@ -279,6 +279,13 @@ contains
         end if
     end function sheared
 
+    pure module function are_usable(x) result(usable)
+        real(wp), intent(in) :: x(:)
+        logical :: usable
+
+        usable = all_usable(size(x), x)
+    end function are_usable
+
     !> Is every number finite and below 2**333 (1.7e100) in magnitude, so that products of three
     !> cannot overflow?
     pure function all_usable(n, x) result(usable)

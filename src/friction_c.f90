@@ -4,13 +4,14 @@ module friction_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_int64_t, c_loc, c_null_char, c_ptr
     use friction_mod, only : array_sizes, friction_bad_size, friction_null_pointer, friction_ok, &
-        friction_rates, friction_tangential, friction_version, statev_size, update_arrays, &
-        update_arrays_batch, update_arrays_points
+        friction_rates, friction_tangential, friction_version, slip_rates_of_arrays, statev_size, &
+        update_arrays, update_arrays_batch, update_arrays_points
     use friction_status, only : first_message, last_message, message_length, message_place, messages
     implicit none
     private
 
-    public :: c_message, c_rates, c_tangential, c_update, c_update_batch, c_update_points, c_version
+    public :: c_message, c_rates, c_slip_rates, c_tangential, c_update, c_update_batch, &
+        c_update_points, c_version
 
     ! C is handed the address of a text, so the constants need a place in memory. Nothing ever
     ! writes to them.
@@ -185,6 +186,43 @@ contains
             statev_, traction_, tangent_, point_status_)
         status = worst(point_status_)
     end function c_update_points
+
+    !> `friction_slip_rates` of include/friction.h. The function's value is the worst status of all
+    !> points.
+    function c_slip_rates(n, tau, pressure, damping, nprops, props, internal, rate, internal_rate, &
+        point_status) result(status) bind(C, name='friction_slip_rates')
+        integer(c_int64_t), value, intent(in) :: n      !! points
+        type(c_ptr), value, intent(in) :: tau           !! n numbers [F/L^2]
+        type(c_ptr), value, intent(in) :: pressure      !! n numbers [F/L^2]
+        real(c_double), value, intent(in) :: damping    !! [F T/L^3]
+        integer(c_int), value, intent(in) :: nprops     !! material constants of a point
+        type(c_ptr), value, intent(in) :: props         !! n x nprops numbers, points first
+        type(c_ptr), value, intent(in) :: internal      !! n numbers [T]
+        type(c_ptr), value, intent(in) :: rate          !! n numbers, out [L/T]
+        type(c_ptr), value, intent(in) :: internal_rate   !! n numbers, out [-]
+        type(c_ptr), value, intent(in) :: point_status    !! n numbers, out
+        integer(c_int) :: status
+        real(c_double), pointer, contiguous :: tau_(:), pressure_(:), props_(:), internal_(:), &
+            rate_(:), internal_rate_(:)
+        integer(c_int), pointer, contiguous :: point_status_(:)
+
+        status = friction_bad_size
+        if (n < 0 .or. nprops < 0) return
+        status = friction_null_pointer
+        if (.not. (c_associated(tau) .and. c_associated(pressure) .and. c_associated(props) &
+            .and. c_associated(internal) .and. c_associated(rate) &
+            .and. c_associated(internal_rate) .and. c_associated(point_status))) return
+        call c_f_pointer(tau, tau_, [n])
+        call c_f_pointer(pressure, pressure_, [n])
+        call c_f_pointer(props, props_, [n * nprops])
+        call c_f_pointer(internal, internal_, [n])
+        call c_f_pointer(rate, rate_, [n])
+        call c_f_pointer(internal_rate, internal_rate_, [n])
+        call c_f_pointer(point_status, point_status_, [n])
+        call slip_rates_of_arrays(n, tau_, pressure_, damping, nprops, props_, internal_, rate_, &
+            internal_rate_, point_status_)
+        status = worst(point_status_)
+    end function c_slip_rates
 
     !> The lowest negative status, else the highest.
     pure function worst(point_status) result(status)

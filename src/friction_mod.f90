@@ -5,8 +5,8 @@
 !> variables. Every procedure here is pure: no saved data, no input or output, no allocation. On a
 !> negative `status` nothing else is touched.
 !>
-!> The procedures themselves are in the submodules friction_advance, friction_batch and
-!> friction_points.
+!> The procedures themselves are in the submodules friction_advance, friction_batch,
+!> friction_points and friction_slip_rate.
 module friction_mod
     use, intrinsic :: iso_fortran_env, only : int64
     use friction_anisotropy, only : largest_mu_ratio
@@ -24,10 +24,11 @@ module friction_mod
     private
 
     public :: friction_update, friction_update_frame, friction_tangential, friction_update_batch, &
-        friction_update_points, friction_rates, friction_is_orthotropic, friction_message, &
-        friction_version
+        friction_update_points, friction_rates, friction_slip_rates, friction_is_orthotropic, &
+        friction_message, friction_version
     ! for the C interface
-    public :: array_sizes, update_arrays, update_arrays_batch, update_arrays_points
+    public :: array_sizes, slip_rates_of_arrays, update_arrays, update_arrays_batch, &
+        update_arrays_points
     public :: friction_bad_axis, friction_bad_increment, friction_bad_law, friction_bad_normal, &
         friction_bad_property, friction_bad_size, friction_bad_state, friction_no_convergence, &
         friction_no_rate, friction_null_pointer, friction_ok, friction_snap_back, &
@@ -168,6 +169,13 @@ module friction_mod
                                                   !! starts with a jump
         end subroutine friction_rates
 
+        !> For the other submodules: is every number finite and below 2**333 (1.7e100) in magnitude?
+        pure module function are_usable(x) result(usable)
+            implicit none
+            real(wp), intent(in) :: x(:)
+            logical :: usable
+        end function are_usable
+
         !> Friction update of many contact points, all with the same constants and the same
         !> increment of time (docs/performance.md). Arrays are component-major: component j of point
         !> i is du(i, j). Bad input at a point leaves that point's data untouched and harms no other
@@ -228,6 +236,43 @@ module friction_mod
             real(wp), intent(inout) :: tangent(sizes%ndir, sizes%ndir, sizes%points)   !! (j, i, k)
             integer, intent(out) :: status(sizes%points)
         end subroutine update_arrays_points
+
+        !> Slip rates of many points without a contact spring: v >= 0 with
+        !>
+        !>     tau - damping v = friction(v, internal, pressure)
+        !>
+        !> and the rate of the law's internal variable at that v (docs/theory.md, section 10). For
+        !> laws in which friction is a growing function of the slip rate, for a given internal
+        !> variable: rate-and-state. Others get `friction_bad_law`, static-kinetic friction too: it
+        !> falls with the slip rate, so that several v can balance one traction. Bad input at a
+        !> point leaves its results untouched and harms no other point; `friction_no_convergence`
+        !> tells a slip rate beyond the range of the arithmetic.
+        module subroutine friction_slip_rates(tau, pressure, damping, props, internal, rate, &
+            internal_rate, status)
+            implicit none
+            real(wp), intent(in), contiguous :: tau(:)   !! magnitudes of the tangential traction,
+                                                         !! >= 0; n points [F/L^2]
+            real(wp), intent(in), contiguous :: pressure(:)   !! >= 0, size n [F/L^2]
+            real(wp), intent(in) :: damping                   !! radiation damping, >= 0 [F T/L^3]
+            real(wp), intent(in), contiguous :: props(:, :)   !! constants of each point as in
+                                                              !! `friction_update`, n x 8 or more;
+                                                              !! the springs are not used
+            real(wp), intent(in), contiguous :: internal(:)   !! theta, > 0, size n [T]
+            real(wp), intent(inout), contiguous :: rate(:)    !! v, size n [L/T]
+            real(wp), intent(inout), contiguous :: internal_rate(:)   !! d(theta)/dt, size n [-]
+            integer, intent(out), contiguous :: status(:)   !! a named code for each of the n points
+        end subroutine friction_slip_rates
+
+        !> The same with explicit sizes.
+        module subroutine slip_rates_of_arrays(n, tau, pressure, damping, nprops, props, internal, &
+            rate, internal_rate, status)
+            implicit none
+            integer(int64), intent(in) :: n     !! points
+            integer, intent(in) :: nprops       !! constants of a point
+            real(wp), intent(in) :: tau(n), pressure(n), damping, props(n, nprops), internal(n)
+            real(wp), intent(inout) :: rate(n), internal_rate(n)
+            integer, intent(out) :: status(n)
+        end subroutine slip_rates_of_arrays
     end interface
 
 end module friction_mod

@@ -18,13 +18,15 @@
 module friction_rate_state_law
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding
+    use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
+        state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
 
     public :: rate_state_law, read_rate_state_law
 
-    integer, parameter :: ageing = 0, slipping = 1   !! values of the constant `evolution`
+    integer, parameter, public :: ageing = 0, slipping = 1   !! values of the constant `evolution`
 
     type, extends(law) :: rate_state_law
         real(wp) :: a         !! direct effect, > 0 [-]
@@ -298,7 +300,7 @@ contains
         jumps = .false.
         rate = 0.0_wp
         if (.not. load%pressure > 0.0_wp) return
-        psi = (self%f0 + self%b * log(self%v0 * state%r / self%d_c)) / self%a
+        psi = state_exponent(self%a, self%b, self%f0, log(self%v0 * state%r / self%d_c))
         x = min(load%traction, self%a * load%pressure * (psi + ln_most)) &
             / (self%a * load%pressure)
         if (x > 1.0_wp) then
@@ -317,11 +319,8 @@ contains
         real(wp) :: x
 
         x = slip_rate * state%r / self%d_c
-        rates = law_state(mu=0.0_wp, r=1.0_wp - x)
-        if (self%evolution == slipping) then
-            rates%r = 0.0_wp
-            if (x > 0.0_wp) rates%r = -x * log(x)
-        end if
+        rates = law_state(mu=0.0_wp, r=ageing_rate(x))
+        if (self%evolution == slipping) rates%r = slip_law_rate(x, log(max(x, tiny(x))))
         if (load%pressure > 0.0_wp) rates%mu = (load%loading - load%stiffness * slip_rate &
             - load%traction / load%pressure * load%pressure_rate) / load%pressure
     end function state_rates
@@ -353,8 +352,8 @@ contains
         real(wp), intent(in) :: ln_theta    !! theta in [T]
         real(wp) :: x
 
-        x = log(slip) - log(dt) - log(2.0_wp * self%v0) &
-            + (self%f0 + self%b * (log(self%v0) - log(self%d_c) + ln_theta)) / self%a
+        x = log(slip) - log(dt) - log(2.0_wp * self%v0) + state_exponent(self%a, self%b, self%f0, &
+            log(self%v0) - log(self%d_c) + ln_theta)
     end function direct_exponent
 
     !> (1 - e^-x)/x: what is left on average of something that decays.
@@ -371,29 +370,5 @@ contains
             mean = 1.0_wp
         end if
     end function mean_decay
-
-    !> asinh(e^x) for every x.
-    pure function asinh_exp(x) result(y)
-        real(wp), intent(in) :: x
-        real(wp) :: y
-
-        if (x > 20.0_wp) then
-            y = x + ln_2 + 0.25_wp * exp(-2.0_wp * x)   ! the next term is below 1e-35
-        else
-            y = asinh(exp(x))
-        end if
-    end function asinh_exp
-
-    !> The derivative of that.
-    pure function slope_asinh_exp(x) result(slope)
-        real(wp), intent(in) :: x
-        real(wp) :: slope   !! 0 to 1
-
-        if (x > 0.0_wp) then
-            slope = 1.0_wp / sqrt(1.0_wp + exp(-2.0_wp * x))
-        else
-            slope = exp(x) / sqrt(1.0_wp + exp(2.0_wp * x))
-        end if
-    end function slope_asinh_exp
 
 end module friction_rate_state_law

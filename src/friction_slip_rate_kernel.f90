@@ -1,0 +1,315 @@
+!> Slip rates of a block of contact points without a contact spring under rate-and-state friction,
+!> in vector lanes. With y = mu/a, t = tau/(a p) and k = 2 v0 e^-x damping/(a p), the balance
+!> `tau - damping v = friction` of a point is
+!>
+!>     f(y) = y + k sinh(y) - t = 0,   0 <= y <= t
+!>
+!> convex, and steeper than a line of slope 1: it has one root. The search starts from an
+!> approximation of the root for k sinh(y) ~ (k/2) e^y, which is t minus the Wright omega function
+!> of t + ln(k/2), and goes on by Householder's method of fourth order: twice as a rule.
+!>
+!> Points that the kernel does not take are told by `left`: numbers out of range or of an unusual
+!> size, and what has not settled. Each point is treated by itself: its result does not depend on
+!> its neighbours. No floating-point exception but inexact and underflow.
+!>
+!> Compiled once for each vector instruction set, under other names, with a copy of the core
+!> (src/CMakeLists.txt): it uses nothing else, so that the copies share nothing.
+module friction_slip_rate_kernel
+    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_rate_state_core, only : ageing_rate, decayed_part, slip_law_rate, slip_rate, &
+        state_exponent
+    implicit none
+    private
+
+    public :: slip_rates_of_block
+
+    integer, parameter :: wp = c_double
+    integer, parameter :: lanes = 128      !! points of a block: its scratch data stay in cache
+    integer, parameter :: inputs = 8       !! numbers of a point
+    integer, parameter :: in_tau = 1, in_pressure = 2, in_theta = 3, in_a = 4, in_b = 5, &
+        in_d_c = 6, in_v0 = 7, in_f0 = 8
+    real(wp), parameter :: largest = 1.0e30_wp    !! of the numbers taken: no product overflows
+    real(wp), parameter :: smallest = 1.0e-30_wp  !! of those that must be positive
+    real(wp), parameter :: far = 20.0_wp   !! beyond this y, 1 - e^-2y is 1 to the last bit
+    real(wp), parameter :: fast = 20.0_wp  !! beyond this z, w is larger than ln(w) by far
+
+    !> A block of points, prepared for the search.
+    type :: search_block
+        real(wp) :: t(lanes)      !! tau/(a p)
+        real(wp) :: x(lanes)      !! of the law
+        real(wp) :: k_half(lanes) !! v0 damping/(a p)
+        real(wp) :: y(lanes)      !! mu/a
+        real(wp) :: per_d_c(lanes)   !! 1/d_c [1/L]
+    end type search_block
+
+contains
+
+    !> Slip rates, and the rates of theta, of 128 points.
+    subroutine slip_rates_of_block(evolution, damping, stride, tau, pressure, theta, constants, &
+        rates, left) bind(C, name='stickslip_slip_rate_kernel')
+        integer(c_int), value, intent(in) :: evolution    !! 0: ageing law, 1: slip law
+        real(wp), value, intent(in) :: damping            !! 0, or 1e-30 to 1e30 [F T/L^3]
+        integer(c_int64_t), value, intent(in) :: stride   !! distance of constants, 128 or more
+        real(wp), intent(in) :: tau(lanes), pressure(lanes)   !! [F/L^2]
+        real(wp), intent(in) :: theta(lanes)                  !! [T]
+        real(wp), intent(in) :: constants(stride, *)      !! a, b, d_c, v0, f0
+        real(wp), intent(out) :: rates(lanes, 2)          !! v [L/T], d(theta)/dt [-]
+        integer(c_int), intent(out) :: left(lanes)        !! 1 for a point not taken, else 0
+        real(wp) :: kept(lanes, inputs)
+        type(search_block) :: block
+
+        call keep_ordinary(stride, tau, pressure, theta, constants, kept, left)
+        call prepare(damping, kept, block, left)
+        call solve(kept, block, rates, left)
+        call evolve(evolution, kept, block, rates)
+    end subroutine slip_rates_of_block
+
+    !> Copies the points; those that are not taken are replaced by ones that harm nobody.
+    subroutine keep_ordinary(stride, tau, pressure, theta, constants, kept, left)
+        integer(c_int64_t), intent(in) :: stride
+        real(wp), intent(in) :: tau(lanes), pressure(lanes), theta(lanes), constants(stride, 5)
+        real(wp), intent(out) :: kept(lanes, inputs)
+        integer(c_int), intent(out) :: left(lanes)
+        integer(c_int64_t) :: fine
+        real(wp) :: valid
+        integer :: i, k
+
+        do i = 1, lanes
+            fine = below_largest(abs(tau(i)) + abs(pressure(i)) + abs(theta(i)) &
+                + abs(constants(i, 1)) + abs(constants(i, 2)) + abs(constants(i, 3)) &
+                + abs(constants(i, 4)) + abs(constants(i, 5)))
+            kept(i, in_tau) = zero_unless(fine, tau(i))
+            kept(i, in_pressure) = zero_unless(fine, pressure(i))
+            kept(i, in_theta) = zero_unless(fine, theta(i))
+            do k = 1, 5
+                kept(i, in_theta + k) = zero_unless(fine, constants(i, k))
+            end do
+            valid = min(kept(i, in_pressure), kept(i, in_theta), kept(i, in_a), kept(i, in_d_c), &
+                kept(i, in_v0)) - smallest
+            valid = min(valid, kept(i, in_tau), kept(i, in_b), kept(i, in_f0))
+            left(i) = 0
+            if (valid < 0.0_wp) left(i) = 1
+        end do
+        if (sum(left) == 0) return
+        do k = 1, inputs
+            do i = 1, lanes
+                if (left(i) > 0) kept(i, k) = 1.0_wp
+            end do
+        end do
+    end subroutine keep_ordinary
+
+    !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
+    !> silent where a comparison with NaN raises an exception.
+    pure function below_largest(total) result(mask)
+        real(wp), intent(in) :: total
+        integer(c_int64_t) :: mask
+
+        mask = shifta(transfer(total, mask) - transfer(largest, mask), 63)
+    end function below_largest
+
+    pure function zero_unless(mask, x) result(kept)
+        integer(c_int64_t), intent(in) :: mask   !! all bits or none
+        real(wp), intent(in) :: x
+        real(wp) :: kept
+
+        kept = transfer(iand(transfer(x, mask), mask), x)
+    end function zero_unless
+
+    !> The numbers of the search, and where it starts.
+    subroutine prepare(damping, kept, block, left)
+        real(wp), intent(in) :: damping
+        real(wp), intent(in) :: kept(lanes, inputs)
+        type(search_block), intent(out) :: block
+        integer(c_int), intent(inout) :: left(lanes)
+        real(wp), parameter :: nothing = 1.0e-300_wp, ln_nothing = log(nothing)
+        real(wp), parameter :: most_t = 1.0e5_wp, most_x = 1.0e5_wp, least_x = -500.0_wp, &
+            most_growth = 600.0_wp   !! e^that is in range
+        real(wp), dimension(lanes) :: state, ln_state, ln_k_half, z
+        real(wp) :: strength, shared, beyond
+        integer :: i
+
+        do i = 1, lanes
+            strength = kept(i, in_a) * kept(i, in_pressure)
+            shared = 1.0_wp / (strength * kept(i, in_d_c))
+            block%per_d_c(i) = strength * shared
+            block%t(i) = kept(i, in_tau) / strength
+            block%k_half(i) = damping * kept(i, in_v0) * (kept(i, in_d_c) * shared)
+            state(i) = kept(i, in_v0) * kept(i, in_theta) * block%per_d_c(i)
+        end do
+        do i = 1, lanes   ! logarithms apart: their call needs the registers
+            ln_state(i) = log(state(i))
+        end do
+        do i = 1, lanes
+            ln_k_half(i) = log(max(block%k_half(i), nothing))
+        end do
+        do i = 1, lanes
+            block%x(i) = state_exponent(kept(i, in_a), kept(i, in_b), kept(i, in_f0), ln_state(i))
+            z(i) = block%t(i) - block%x(i) + ln_k_half(i)
+            beyond = max(block%t(i) - most_t, block%x(i) - most_x, least_x - block%x(i), &
+                min(block%t(i) - block%x(i), -ln_k_half(i)) - most_growth)
+            if (beyond > 0.0_wp) left(i) = 1
+            if (left(i) > 0) then
+                block%t(i) = 1.0_wp
+                block%x(i) = 0.0_wp
+                block%k_half(i) = 0.0_wp
+                z(i) = ln_nothing
+            end if
+            block%y(i) = block%t(i) - wright_omega(z(i))
+        end do
+        call start_fast(z, block)
+        call start_small(z, block)
+    end subroutine prepare
+
+    !> w with w + ln(w) = z, to 0.07 up to z = 20: a polynomial by least squares.
+    pure function wright_omega(z) result(w)
+        real(wp), intent(in) :: z
+        real(wp) :: w
+        real(wp), parameter :: low = -3.0_wp
+        real(wp) :: inner
+
+        inner = min(max(z, low), fast)
+        w = 0.5968_wp + inner * (0.3838_wp + inner * (0.05949_wp + inner * (-3.019e-3_wp &
+            + inner * 5.789e-5_wp)))
+        if (z < low) w = 0.0_wp
+    end function wright_omega
+
+    !> Where damping carries most of the traction: w ~ z - ln(z).
+    subroutine start_fast(z, block)
+        real(wp), intent(in) :: z(lanes)   !! t + ln(k/2)
+        type(search_block), intent(inout) :: block
+        real(wp) :: ln_z(lanes), most
+        integer :: i
+
+        most = z(1)
+        do i = 2, lanes
+            most = max(most, z(i))
+        end do
+        if (most <= fast) return
+        do i = 1, lanes
+            ln_z(i) = log(max(z(i), 1.0_wp))
+        end do
+        do i = 1, lanes
+            if (z(i) > fast) block%y(i) = block%t(i) - (z(i) - ln_z(i))
+        end do
+    end subroutine start_fast
+
+    !> Where y is below 1, sinh(y) ~ y + y^3/6 is the better approximation.
+    subroutine start_small(z, block)
+        real(wp), intent(in) :: z(lanes)   !! t + ln(k/2)
+        type(search_block), intent(inout) :: block
+        real(wp), parameter :: clear = 1.5_wp   !! a start beyond has a root beyond 1
+        real(wp) :: k(lanes), y
+        integer :: i
+
+        if (least(block%y) >= clear) return
+        do i = 1, lanes
+            k(i) = 2.0_wp * exp(z(i) - block%t(i))
+        end do
+        do i = 1, lanes
+            y = block%t(i) / (1.0_wp + k(i))
+            y = block%t(i) / (1.0_wp + k(i) * (1.0_wp + y**2 * (1.0_wp / 6.0_wp)))
+            if (max(block%y(i) - clear, block%t(i) - (1.0_wp + k(i))) < 0.0_wp) block%y(i) = y
+        end do
+    end subroutine start_small
+
+    pure function least(y)
+        real(wp), intent(in) :: y(lanes)
+        real(wp) :: least
+        integer :: i
+
+        least = y(1)
+        do i = 2, lanes
+            least = min(least, y(i))
+        end do
+    end function least
+
+    !> Householder's method; a point that has converged stays where it is while others go on. Its
+    !> slip rate is that before the last step, with the step d by the addition theorem
+    !> sinh(y + d) = sinh(y) cosh(d) + cosh(y) sinh(d): d is small.
+    subroutine solve(kept, block, rates, left)
+        real(wp), intent(in) :: kept(lanes, inputs)
+        type(search_block), intent(inout) :: block
+        real(wp), intent(inout) :: rates(lanes, 2)   !! out: v, the first
+        integer(c_int), intent(inout) :: left(lanes)
+        real(wp), parameter :: small = 1.0e-4_wp   !! the next error is below its fourth power
+        real(wp), parameter :: sixth = 1.0_wp / 6.0_wp
+        integer, parameter :: max_iterations = 12
+        real(wp), dimension(lanes) :: growth, part, moves
+        real(wp) :: still, s, c, f, f1, d, v
+        integer :: i, iteration
+
+        moves = 1.0_wp
+        rates(:, 1) = 0.0_wp
+        do iteration = 1, max_iterations
+            call grow(block, growth, part)
+            still = 0.0_wp
+            do i = 1, lanes
+                s = block%k_half(i) * growth(i) * part(i)   ! k sinh(y), k cosh(y)
+                c = block%k_half(i) * growth(i) * (2.0_wp - part(i))
+                f = (block%y(i) - block%t(i)) + s
+                f1 = 1.0_wp + c
+                d = -f * (f1**2 - 0.5_wp * f * s) / (f1 * (f1**2 - f * s) + f**2 * c * sixth)
+                d = min(max(d, -0.9_wp * block%y(i)), block%t(i) - block%y(i))
+                v = slip_rate(kept(i, in_v0), growth(i), part(i) * (1.0_wp + 0.5_wp * d**2) &
+                    + (2.0_wp - part(i)) * d * (1.0_wp + d**2 * sixth))
+                if (moves(i) <= 0.0_wp) v = rates(i, 1)
+                rates(i, 1) = v
+                block%y(i) = block%y(i) + d * moves(i)
+                if (abs(d) <= small * min(block%y(i), 1.0_wp)) moves(i) = 0.0_wp
+                still = max(still, moves(i))
+            end do
+            if (still <= 0.0_wp) return
+        end do
+        do i = 1, lanes
+            if (moves(i) > 0.0_wp) left(i) = 1
+        end do
+    end subroutine solve
+
+    !> e^(y - x), and 1 - e^-2y.
+    subroutine grow(block, growth, part)
+        type(search_block), intent(in) :: block
+        real(wp), intent(out) :: growth(lanes), part(lanes)
+        real(wp) :: e_y(lanes)
+        integer :: i
+
+        do i = 1, lanes
+            growth(i) = exp(block%y(i) - block%x(i))
+        end do
+        part = 1.0_wp
+        if (least(block%y) > far) return
+        do i = 1, lanes
+            e_y(i) = exp(-block%y(i))
+        end do
+        do i = 1, lanes
+            part(i) = decayed_part(block%y(i), e_y(i))
+        end do
+    end subroutine grow
+
+    !> The rate of theta, from the slip rate.
+    subroutine evolve(evolution, kept, block, rates)
+        integer(c_int), intent(in) :: evolution
+        real(wp), intent(in) :: kept(lanes, inputs)
+        type(search_block), intent(in) :: block
+        real(wp), intent(inout) :: rates(lanes, 2)   !! in: v
+        real(wp), parameter :: nothing = 1.0e-300_wp
+        real(wp), dimension(lanes) :: w, ln_w
+        integer :: i
+
+        do i = 1, lanes
+            w(i) = rates(i, 1) * (kept(i, in_theta) * block%per_d_c(i))
+        end do
+        if (evolution == 0) then
+            do i = 1, lanes
+                rates(i, 2) = ageing_rate(w(i))
+            end do
+        else
+            do i = 1, lanes
+                ln_w(i) = log(max(w(i), nothing))
+            end do
+            do i = 1, lanes
+                rates(i, 2) = slip_law_rate(w(i), ln_w(i))
+            end do
+        end if
+    end subroutine evolve
+
+end module friction_slip_rate_kernel

@@ -1,0 +1,102 @@
+!> The physics of rate-and-state friction, regularised (Dieterich 1979, Ruina 1983, Rice et al.
+!> 2001), on plain numbers:
+!>
+!>     mu = a asinh(v/(2 v0) e^x),   x = (f0 + b ln(v0 theta/d_c))/a
+!>     ageing law:  theta_dot = 1 - w,          w = v theta/d_c
+!>     slip law:    theta_dot = -w ln(w)
+!>
+!> The form of a core: elemental functions of numbers, without types, branches or state, so that a
+!> compiler can inline them into a loop and turn that into vector instructions. Law (one point, an
+!> increment) and vector kernel (many points) are wrappers of it and write no formula a second time.
+!> A core uses nothing but the kind of its numbers: the build puts a copy of it into each copy of a
+!> kernel (src/CMakeLists.txt).
+module friction_rate_state_core
+    use, intrinsic :: iso_fortran_env, only : wp => real64
+    implicit none
+    private
+
+    public :: state_exponent, asinh_exp, slope_asinh_exp, slip_rate, decayed_part, ageing_rate, &
+        slip_law_rate
+
+    real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
+
+contains
+
+    !> x of the law: how strong the state makes the surface.
+    elemental function state_exponent(a, b, f0, ln_state) result(x)
+        real(wp), intent(in) :: a          !! direct effect, > 0 [-]
+        real(wp), intent(in) :: b          !! evolution effect [-]
+        real(wp), intent(in) :: f0         !! coefficient of steady sliding at v0 [-]
+        real(wp), intent(in) :: ln_state   !! ln(v0 theta/d_c)
+        real(wp) :: x
+
+        x = (f0 + b * ln_state) / a
+    end function state_exponent
+
+    !> asinh(e^u) for every u: mu/a, if u = ln(v/(2 v0)) + x.
+    elemental function asinh_exp(u) result(y)
+        real(wp), intent(in) :: u
+        real(wp) :: y
+
+        if (u > 20.0_wp) then
+            y = u + ln_2 + 0.25_wp * exp(-2.0_wp * u)   ! the next term is below 1e-35
+        else
+            y = asinh(exp(u))
+        end if
+    end function asinh_exp
+
+    !> The derivative of that.
+    elemental function slope_asinh_exp(u) result(slope)
+        real(wp), intent(in) :: u
+        real(wp) :: slope   !! 0 to 1
+
+        if (u > 0.0_wp) then
+            slope = 1.0_wp / sqrt(1.0_wp + exp(-2.0_wp * u))
+        else
+            slope = exp(u) / sqrt(1.0_wp + exp(2.0_wp * u))
+        end if
+    end function slope_asinh_exp
+
+    !> The law the other way round, v = 2 v0 e^-x sinh(y), for y = mu/a.
+    elemental function slip_rate(v0, growth, part) result(v)
+        real(wp), intent(in) :: v0       !! reference slip rate, > 0 [L/T]
+        real(wp), intent(in) :: growth   !! e^(y - x)
+        real(wp), intent(in) :: part     !! 1 - e^-2y, see `decayed_part`
+        real(wp) :: v                    !! [L/T]
+
+        v = v0 * growth * part
+    end function slip_rate
+
+    !> 1 - e^-2y without cancellation, for y >= 0 and given e^-y.
+    elemental function decayed_part(y, e_y) result(part)
+        real(wp), intent(in) :: y     !! >= 0
+        real(wp), intent(in) :: e_y   !! e^-y
+        real(wp) :: part              !! 0 to 1
+        real(wp), parameter :: small = 0.5_wp   !! below it the series is exact to round-off
+        real(wp), parameter :: c3 = 2.0_wp / 6.0_wp, c5 = c3 / 20.0_wp, c7 = c5 / 42.0_wp, &
+            c9 = c7 / 72.0_wp, c11 = c9 / 110.0_wp, c13 = c11 / 156.0_wp   !! of 2 sinh(y)
+        real(wp) :: z, twice_sinh
+
+        z = y * y
+        twice_sinh = y * (2.0_wp + z * (c3 + z * (c5 + z * (c7 + z * (c9 + z * (c11 + z * c13))))))
+        part = merge(e_y * twice_sinh, 1.0_wp - e_y * e_y, y < small)
+    end function decayed_part
+
+    !> How fast theta ages.
+    elemental function ageing_rate(w) result(rate)
+        real(wp), intent(in) :: w   !! v theta/d_c, >= 0
+        real(wp) :: rate            !! d(theta)/dt [-]
+
+        rate = 1.0_wp - w
+    end function ageing_rate
+
+    !> How fast theta changes by slip alone.
+    elemental function slip_law_rate(w, ln_w) result(rate)
+        real(wp), intent(in) :: w      !! v theta/d_c, >= 0
+        real(wp), intent(in) :: ln_w   !! its logarithm
+        real(wp) :: rate               !! d(theta)/dt [-]
+
+        rate = -w * ln_w
+    end function slip_law_rate
+
+end module friction_rate_state_core

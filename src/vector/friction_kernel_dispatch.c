@@ -1,0 +1,44 @@
+/* Chooses the copies of the vector kernels (friction_batch_kernel.f90, friction_slip_rate_kernel.f90) for the
+ * processor at hand. Empty where the build makes no copies: then the kernels themselves bear the names. */
+#include <stdint.h>
+
+#ifdef STICKSLIP_VECTOR_KERNELS
+
+typedef void batch_kernel(int64_t stride, const double *du, double dtime, const double *constants, double *statev,
+                          double *traction, double *tangent, int *left, int *n_left);
+typedef void slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau, const double *pressure,
+                              const double *theta, const double *constants, double *rates, int *left);
+
+batch_kernel stickslip_batch_kernel, stickslip_batch_kernel_sse2, stickslip_batch_kernel_avx2,
+    stickslip_batch_kernel_avx512;
+slip_rate_kernel stickslip_slip_rate_kernel, stickslip_slip_rate_kernel_sse2, stickslip_slip_rate_kernel_avx2,
+    stickslip_slip_rate_kernel_avx512;
+
+enum instruction_set { SSE2, AVX2, AVX512 };
+
+static enum instruction_set instructions(void)
+{
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")
+        && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd"))
+        return AVX512;
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? AVX2 : SSE2;
+}
+
+void stickslip_batch_kernel(int64_t stride, const double *du, double dtime, const double *constants, double *statev,
+                            double *traction, double *tangent, int *left, int *n_left)
+{
+    static batch_kernel *const copies[] = {stickslip_batch_kernel_sse2, stickslip_batch_kernel_avx2,
+                                           stickslip_batch_kernel_avx512};
+    copies[instructions()](stride, du, dtime, constants, statev, traction, tangent, left, n_left);
+}
+
+void stickslip_slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau,
+                                const double *pressure, const double *theta, const double *constants, double *rates,
+                                int *left)
+{
+    static slip_rate_kernel *const copies[] = {stickslip_slip_rate_kernel_sse2, stickslip_slip_rate_kernel_avx2,
+                                               stickslip_slip_rate_kernel_avx512};
+    copies[instructions()](evolution, damping, stride, tau, pressure, theta, constants, rates, left);
+}
+
+#endif
