@@ -241,7 +241,7 @@ module friction_mod
         !>
         !>     tau - damping v = friction(v, internal, pressure)
         !>
-        !> and the rate of the law's internal variable at that v (docs/theory.md, section 10). For
+        !> and the rate of the law's internal variable at that v (docs/theory.md, section 11). For
         !> laws in which friction is a growing function of the slip rate, for a given internal
         !> variable: rate-and-state. Others get `friction_bad_law`, static-kinetic friction too: it
         !> falls with the slip rate, so that several v can balance one traction. Bad input at a
