@@ -216,8 +216,8 @@ contains
         if (.not. are_usable(props)) return
         status = friction_bad_law
         if (whole_number(props(prop_law)) /= law_rate_state) return
-        call read_rate_state_law(size(props) - first_own_prop + 1, props(first_own_prop:), surface, &
-            status)
+        call read_rate_state_law(size(props) - first_own_prop + 1, props(first_own_prop:), &
+            surface, status)
         if (status < 0) return
         cap = 0.0_wp
         if (size(props) >= prop_cap) cap = props(prop_cap)

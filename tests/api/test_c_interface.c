@@ -131,6 +131,31 @@ static void rates_are_what_the_update_tends_to(void)
     CHECK(friction_rates(4, v, 9, props, 8, statev, rates) == FRICTION_BAD_SIZE);
 }
 
+static void slip_rates_balance_the_traction(void)
+{
+    enum { n = 2 };
+    /* points first: constant k of point i is at k*n + i; d_c differs */
+    const double constants[8 * n] = {4, 4, 0, 0, 0, 0, 0.01, 0.01, 0.015, 0.015, 0.008, 0.016, 1e-6, 1e-6, 0.6, 0.6};
+    const double tau[n] = {30e6, 31e6}, pressure[n] = {50e6, 50e6}, theta[n] = {1e6, 2e6}, damping = 4.6e6;
+    double rate[n] = {7, 7}, theta_rate[n], friction;
+    int status[n], i;
+
+    CHECK(friction_slip_rates(n, tau, pressure, damping, 8, constants, theta, rate, theta_rate, status) == FRICTION_OK);
+    for (i = 0; i < n; i++) {
+        friction = 0.01 * 50e6 * asinh(rate[i] / 2e-6 * exp((0.6 + 0.015 * log(125.0)) / 0.01));
+        CHECK(status[i] == FRICTION_OK && fabs(tau[i] - damping * rate[i] - friction) < 1e-6);
+        CHECK(fabs(theta_rate[i] - (1 - rate[i] * 1.25e8)) < 1e-14);
+    }
+    CHECK(friction_slip_rates(n, tau, pressure, damping, 7, constants, theta, rate, theta_rate, status)
+          == FRICTION_BAD_SIZE);
+    CHECK(friction_slip_rates(-1, tau, pressure, damping, 8, constants, theta, rate, theta_rate, status)
+          == FRICTION_BAD_SIZE);
+    CHECK(friction_slip_rates(n, tau, pressure, damping, 8, constants, theta, rate, NULL, status)
+          == FRICTION_NULL_POINTER);
+    CHECK(friction_slip_rates(1, tau, pressure, damping, 8, props, theta, rate, theta_rate, status)
+          == FRICTION_BAD_LAW);
+}
+
 static void bad_calls_are_codes_and_touch_nothing(void)
 {
     double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
@@ -175,6 +200,7 @@ int main(void)
     a_batch_is_component_major();
     points_are_in_c_order();
     rates_are_what_the_update_tends_to();
+    slip_rates_balance_the_traction();
     bad_calls_are_codes_and_touch_nothing();
     texts_are_constant_c_strings();
     printf("%d failures\n", failures);
