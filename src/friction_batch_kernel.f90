@@ -24,6 +24,7 @@ module friction_batch_kernel
     real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: third = 1.0_wp / 3.0_wp
+    real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
     !> Constants of the law and of the increment.
     type :: increment
@@ -123,7 +124,7 @@ contains
             trial%c(i) = (mu - inc%mu_k) + inc%forming
             trial%slides(i) = 0.0_wp
             strength = trial%r(i) * (inc%mu_k + trial%c(i) * iw0) * trial%p(i)
-            if (trial%tau(i) > strength) trial%slides(i) = 1.0_wp
+            if (trial%tau(i) > strength * (1.0_wp + verge)) trial%slides(i) = 1.0_wp
             if (trial%p(i) <= 0.0_wp) trial%slides(i) = 0.0_wp
             fall = trial%p(i) * inc%kappa * trial%c(i)
             if (inc%alpha_t * inc%w0**2 <= fall) valid = min(valid, -trial%slides(i))

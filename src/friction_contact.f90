@@ -2,15 +2,23 @@
 !> and slip, and the consistent tangent (docs/theory.md, sections 2 to 5).
 module friction_contact
     use friction_anisotropy, only : orthotropy, slide_associated, sliding_way
-    use friction_kinds, only : wp
+    use friction_kinds, only : largest, wp
     use friction_law, only : law, law_state, sliding
     use friction_reloading, only : find_reloading, reloading
     use friction_return_map, only : return_map
-    use friction_status, only : friction_ok
+    use friction_status, only : friction_bad_increment, friction_ok
     implicit none
     private
 
     public :: contact_motion, contact_point, contact_springs, contact_update
+
+    !> A trial sticks if it is above the strength by no more than this share, which is round-off
+    !> (docs/theory.md, section 3).
+    real(wp), parameter :: verge = 32.0_wp * epsilon(verge)
+
+    !> Pressures [F/L^2] and displacements [L] below this are none: their quotients would leave the
+    !> range of the arithmetic.
+    real(wp), parameter :: least = 2.0_wp**(-960)
 
     integer, parameter, public :: point_virgin = 0   !! nothing has happened yet
     integer, parameter, public :: point_stick = 1    !! closed, tangentially elastic
@@ -57,7 +65,7 @@ contains
                                                  !! tangential [F/L^2]
         real(wp), intent(inout) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is
                                                    !! given, column 1 is d/d(pressure)
-        integer, intent(out) :: status               !! ok, snap back, or no convergence
+        integer, intent(out) :: status   !! ok, snap back, bad increment, or no convergence
         real(wp) :: pressure, loaded, q(2), tau(2), by_q(2, 2), by_pressure(2)
         logical :: closes
 
@@ -67,8 +75,10 @@ contains
             pressure = motion%pressure
             new%u_n = -pressure / springs%normal
         end if
+        status = friction_bad_increment
+        if (max(abs(new%u_n), pressure) > largest) return
         status = friction_ok
-        if (.not. pressure > 0.0_wp) then
+        if (.not. pressure > least) then
             call open_contact(surface, motion%dt, old, new)
             traction = 0.0_wp
             tangent = 0.0_wp
@@ -85,22 +95,16 @@ contains
         call tangential_update(surface, springs%tangential, plane, q, pressure, motion%dt, old, &
             new, tau, by_q, by_pressure, status)
         if (status < 0) return
+        if (.not. motion%pressure_given) by_pressure = -springs%normal * by_pressure
+        if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure, status)
+        if (status < 0) return
         traction(1) = -pressure
         traction(2) = tau(1)
         traction(3) = tau(2)
         tangent(1, 1) = springs%normal
+        if (motion%pressure_given) tangent(1, 1) = -1.0_wp
         tangent(1, 2) = 0.0_wp
         tangent(1, 3) = 0.0_wp
-        if (motion%pressure_given) then
-            tangent(1, 1) = -1.0_wp
-        else
-            by_pressure = -springs%normal * by_pressure
-            if (closes) then
-                by_pressure = by_pressure - old%u_n / motion%du(1)**2 &
-                    * matmul(by_q, motion%du(2:3))
-                by_q = loaded * by_q
-            end if
-        end if
         tangent(2, 1) = by_pressure(1)
         tangent(3, 1) = by_pressure(2)
         tangent(2, 2) = by_q(1, 1)
@@ -108,6 +112,27 @@ contains
         tangent(2, 3) = by_q(1, 2)
         tangent(3, 3) = by_q(2, 2)
     end subroutine contact_update
+
+    !> Derivatives where the increment closes a gap: its tangential part counts from touchdown on,
+    !> and touchdown moves with the normal part.
+    pure subroutine touch_down(du, gap, loaded, by_q, by_du_n, status)
+        real(wp), intent(in) :: du(3)              !! increment of displacement [L]
+        real(wp), intent(in) :: gap                !! at its start, > 0 [L]
+        real(wp), intent(in) :: loaded             !! share after touchdown [-]
+        real(wp), intent(inout) :: by_q(2, 2)      !! in: by the loaded displacement, out: by du
+        real(wp), intent(inout) :: by_du_n(2)      !! by du(1) [F/L^3]
+        integer, intent(inout) :: status           !! bad increment, or as it was
+        real(wp), parameter :: steepest = 2.0_wp**960   !! that is still in range [F/L^3]
+        real(wp) :: by_loaded(2)
+
+        by_loaded = matmul(by_q, du(2:3))
+        if (maxval(abs(by_loaded)) / steepest > abs(du(1))) then
+            status = friction_bad_increment
+            return
+        end if
+        by_du_n = by_du_n - (gap / du(1)) * (by_loaded / du(1))
+        by_q = loaded * by_q
+    end subroutine touch_down
 
     !> No pressure: nothing is carried, the surfaces forget their elastic displacement and heal.
     pure subroutine open_contact(surface, dt, old, new)
@@ -131,7 +156,7 @@ contains
         class(law), intent(in) :: surface
         real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         type(orthotropy), intent(in) :: plane
-        real(wp), intent(in) :: q(2)          !! trial elastic tangential displacement [L]
+        real(wp), intent(inout) :: q(2)       !! trial elastic tangential displacement [L]
         real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
         real(wp), intent(in) :: dt            !! increment of time [T]
         type(contact_point), intent(in) :: old
@@ -140,12 +165,16 @@ contains
         real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
         real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
         integer, intent(out) :: status
+        real(wp), parameter :: near_underflow = 2.0_wp**(-450)   !! of a length, in its square [L]
         type(law_state) :: start
         type(reloading) :: reload
         real(wp) :: distance, strength
 
-        status = friction_ok
+        status = friction_bad_increment
         distance = sqrt(q(1)**2 + (plane%squeeze * q(2))**2)
+        if (distance < near_underflow) call measure(q, plane%squeeze, distance)
+        if (max(distance, alpha_t * distance) > largest) return
+        status = friction_ok
         call surface%rest(alpha_t * distance, pressure, dt, old%inner, new%inner, strength)
         start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
@@ -155,7 +184,7 @@ contains
             start%r = reload%share * start%r
             strength = reload%share * strength
         end if
-        if (alpha_t * distance <= strength) then
+        if (alpha_t * distance <= strength * (1.0_wp + verge)) then
             new%phase = point_stick
             new%u_et(1) = q(1)
             new%u_et(2) = q(2)
@@ -173,6 +202,18 @@ contains
                 old, new, tau, by_q, by_pressure, status)
         end if
     end subroutine tangential_update
+
+    !> Length of a displacement whose squares underflow; below the least one it is none.
+    pure subroutine measure(q, squeeze, distance)
+        real(wp), intent(inout) :: q(2)       !! [L]
+        real(wp), intent(in) :: squeeze       !! how much more the second counts [-]
+        real(wp), intent(out) :: distance     !! its equivalent length [L]
+
+        distance = hypot(q(1), squeeze * q(2))
+        if (hypot(q(1), q(2)) > least) return
+        q = 0.0_wp
+        distance = 0.0_wp
+    end subroutine measure
 
     !> The same where the trial traction is above the strength.
     pure subroutine slip_update(surface, alpha_t, plane, q, distance, pressure, dt, start, reload, &
@@ -222,12 +263,13 @@ contains
         tau(1) = way%tau(1)
         tau(2) = way%tau(2)
         new%phase = point_slip
-        new%inner = slid%state
+        new%inner%mu = min(slid%state%mu, largest)
+        new%inner%r = min(slid%state%r, largest)
         share = 1.0_wp / alpha_t
         new%u_et(1) = share * tau(1)
         new%u_et(2) = share * tau(2)
-        new%slip = old%slip + slid%slip
-        new%dissipation = old%dissipation + mean * slid%slip * way%lever
+        new%slip = min(old%slip + slid%slip, largest)
+        new%dissipation = min(old%dissipation + mean * slid%slip * way%lever, largest)
         by_pressure(1) = coupling * by_p * way%answer(1)
         by_pressure(2) = coupling * by_p * way%answer(2)
         by_q(1, 1) = coupling * way%answer(1) * pull(1) + way%across * way%along(2)**2

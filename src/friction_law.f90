@@ -12,6 +12,9 @@ module friction_law
 
     public :: below, law, law_state, law_traits, load_rates, sliding
 
+    !> A slope of which nothing better is known: its products with slips stay in range.
+    real(wp), parameter, public :: unbounded = 2.0_wp**660   !! [F/L^3]
+
     !> Internal variables of a law at one contact point.
     type :: law_state
         real(wp) :: mu   !! friction coefficient [-]
@@ -60,6 +63,10 @@ module friction_law
         !> Whoever makes a law for use says so (an initial value here would be stored at every call
         !> for every law that there is).
         logical :: follows_path
+
+        !> The largest tangential traction that the surface carries (module friction_shear_cap);
+        !> huge for none. Whoever makes a law for use sets it. [F/L^2]
+        real(wp) :: tau_max
     contains
         procedure(virgin_interface), deferred :: virgin
         procedure(admits_interface), deferred :: admits
@@ -69,7 +76,8 @@ module friction_law
         procedure(state_rates_interface), deferred :: state_rates
         procedure :: resistance_at => resistance_at_any_rate
         procedure :: traits => simple_traits
-        procedure :: weakening => never_weakens
+        procedure :: slopes => slopes_of_convex
+        procedure :: slide_uncapped => slide_as_ever
         procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
         procedure :: start_rate => no_start_rate
@@ -151,19 +159,39 @@ module friction_law
 
 contains
 
-    !> How fast the resistance can fall with slip: an upper bound of -d(resistance)/d(slip) from
-    !> slip `from` to slip `to`, the tighter the closer the two. Where the contact spring is
-    !> stiffer, there is one equilibrium at most. A law that weakens with slip overrides this.
-    pure function never_weakens(self, from, to, pressure, dt, old) result(bound)
+    !> Bounds of d(resistance)/d(slip), without the cap, between two slips: rigorous, and the
+    !> tighter the closer the two. The search for the first equilibrium rests on them.
+    !>
+    !> A resistance that is constant or falls ever slower (convex) has them at the ends; a law with
+    !> another one overrides this.
+    pure subroutine slopes_of_convex(self, first, last, pressure, dt, old, least, most)
         class(law), intent(in) :: self
-        real(wp), intent(in) :: from, to     !! slips in this increment, 0 <= from < to [L]
+        type(sliding), intent(in) :: first   !! what `slide` says of the smaller slip, ...
+        type(sliding), intent(in) :: last    !! ... and of the larger one
         real(wp), intent(in) :: pressure     !! contact pressure, > 0 [F/L^2]
         real(wp), intent(in) :: dt           !! increment of time, >= 0 [T]
         type(law_state), intent(in) :: old   !! state at the start of the increment
-        real(wp) :: bound                    !! may be negative: then the resistance grows [F/L^3]
+        real(wp), intent(out) :: least, most   !! `unbounded` where nothing better is known [F/L^3]
 
-        bound = 0.0_wp
-    end function never_weakens
+        least = first%d_slip
+        most = last%d_slip
+    end subroutine slopes_of_convex
+
+    !> `slide` without the cap that the law may have.
+    pure subroutine slide_as_ever(self, slip, pressure, dt, old, new, resistance, d_slip, &
+        d_pressure)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: slip            !! slip in this increment, >= 0 [L]
+        real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
+        real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old      !! state at the start of the increment
+        type(law_state), intent(out) :: new     !! state at its end
+        real(wp), intent(out) :: resistance     !! tangential traction [F/L^2]
+        real(wp), intent(out) :: d_slip         !! d(resistance)/d(slip) [F/L^3]
+        real(wp), intent(out) :: d_pressure     !! d(resistance)/d(pressure) [-]
+
+        call self%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+    end subroutine slide_as_ever
 
     !> Does the resistance depend on the slip rate, which an increment without time leaves
     !> undefined? A law of which that is true overrides this.
@@ -174,19 +202,21 @@ contains
         needs = .false.
     end function needs_no_time
 
-    !> The equilibrium `trial - stiffness*slip = resistance(slip)` by a way of the law's own, where
-    !> it has a fast one. It may give up (`solved` false): the return mapping's own search, slower
-    !> but sure, takes over then.
+    !> The equilibrium `trial - stiffness*slip = resistance(slip)`, without the cap, by a way of the
+    !> law's own, where it has a fast one. It may give up (`solved` false): the return mapping's own
+    !> search, slower but sure, takes over then.
+    !>
+    !> To have solved it means that from any slip at which the spring pulls harder than the surface
+    !> resists, one equilibrium follows, and no more than one; and that this is it, to round-off.
     pure subroutine not_solved(self, trial, stiffness, pressure, dt, old, answer, solved)
         class(law), intent(in) :: self
-        real(wp), intent(in) :: trial   !! tangential traction without slip, above the strength
-                                        !! [F/L^2]
+        real(wp), intent(in) :: trial           !! tangential traction without slip [F/L^2]
         real(wp), intent(in) :: stiffness       !! tangential stiffness, > 0 [F/L^3]
         real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
         real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
         type(law_state), intent(in) :: old      !! state at the start of the increment
         type(sliding), intent(out) :: answer    !! the equilibrium, if solved
-        logical, intent(out) :: solved   !! true only if the answer is exact to round-off and unique
+        logical, intent(out) :: solved          !! see above
 
         solved = .false.
     end subroutine not_solved

@@ -92,6 +92,7 @@ contains
         end select
         if (status < 0) return
         surface%follows_path = scheme == scheme_exact_rate
+        surface%tau_max = huge(surface%tau_max)
         if (nprops >= prop_tau_max(number)) then
             call cap_law(props(prop_tau_max(number)), storage%capped, surface, status)
             if (status < 0) return

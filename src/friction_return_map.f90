@@ -6,12 +6,16 @@
 !>     g(s) = trial - stiffness*s - resistance(s) = 0,   g(0) > 0,   g(trial/stiffness) <= 0,
 !>
 !> whatever the law. Its first root counted from s = 0 is the equilibrium that the contact reaches
-!> first. The law's own fast solution is taken where it has one; otherwise a search with a
-!> guaranteed bracket. The search does not need the spring's line to be straight: it follows any
-!> curve on which the traction falls ever more slowly with the slip (`return_along`).
+!> first. The law's own fast solution is taken where it has one; otherwise a search that proves,
+!> stretch by stretch, that it passes no root (docs/theory.md, section 12). The search does not need
+!> the spring's line to be straight: it follows any curve on which the traction falls ever more
+!> slowly with the slip (`return_along`).
+!>
+!> A law with a shear cap resists with the smaller of its own resistance and the cap. As long as the
+!> spring pulls harder than the cap there is no equilibrium; from there on the law alone counts.
 module friction_return_map
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : law, law_state, sliding, unbounded
     use friction_status, only : friction_no_convergence, friction_ok, friction_snap_back
     implicit none
     private
@@ -43,6 +47,20 @@ module friction_return_map
         type(law_state) :: old  !! state at the start of the increment
     end type load
 
+    !> Spring and law at a point of the curve.
+    type :: place
+        real(wp) :: x
+        type(unloaded) :: spring
+        type(sliding) :: law    !! without the cap
+        real(wp) :: g           !! how much harder the spring pulls than the law resists [F/L^2]
+    end type place
+
+    !> Part of the curve between two places.
+    type :: stretch
+        type(place) :: first, last
+        logical :: holds_root   !! false: no root up to the end of the curve
+    end type stretch
+
 contains
 
     !> Slip, traction and state of a surface whose trial traction is above its strength.
@@ -56,15 +74,33 @@ contains
         type(law_state), intent(in) :: old     !! state at the start of the increment
         type(sliding), intent(out) :: answer   !! the equilibrium
         integer, intent(out) :: status         !! ok, snap back, or no convergence
-        real(wp) :: slip
+        type(unloading) :: spring
+        real(wp) :: x
         logical :: solved
 
         status = friction_ok
-        call surface%solve(trial, stiffness, pressure, dt, old, answer, solved)
-        if (solved) return
-        call return_along(surface, unloading(trial, stiffness, trial / stiffness), pressure, dt, &
-            old, answer, slip, status)
+        spring = unloading(trial, stiffness, trial / stiffness)
+        if (.not. cap_holds(surface, spring, load(pressure, dt, old))) then
+            call surface%solve(trial, stiffness, pressure, dt, old, answer, solved)
+            if (solved) return
+        end if
+        call return_along(surface, spring, pressure, dt, old, answer, x, status)
     end subroutine return_map
+
+    !> Does the law itself resist at least as much as its cap, where the spring is down at that?
+    pure function cap_holds(surface, spring, this) result(holds)
+        class(law), intent(in) :: surface
+        type(unloading), intent(in) :: spring
+        type(load), intent(in) :: this
+        logical :: holds
+        type(place) :: there
+
+        holds = .false.
+        if (.not. spring%trial > surface%tau_max) return
+        there%x = (spring%trial - surface%tau_max) / spring%stiffness
+        call slide_to(surface, spring, this, there)
+        holds = .not. there%g > 0.0_wp
+    end function cap_holds
 
     !> The same along any unloading curve, by the search alone.
     pure subroutine return_along(surface, spring, pressure, dt, old, answer, x, status)
@@ -76,31 +112,32 @@ contains
         type(sliding), intent(out) :: answer   !! the equilibrium
         real(wp), intent(out) :: x             !! where it is on the curve
         integer, intent(out) :: status         !! ok, snap back, or no convergence
-        real(wp), parameter :: apart = 1.0e-6_wp   !! relative distance of roots that can be told
-                                                   !! apart
         type(load) :: this
-        type(unloaded) :: there
-        type(sliding) :: slid
-        real(wp) :: from, low, high, g
-        logical :: found, alone
+        type(place) :: here
+        type(stretch) :: part
 
         this = load(pressure, dt, old)
         status = friction_ok
-        x = 0.0_wp
-        call slide_to(surface, spring, this, x, there, answer, g)
-        if (g > 0.0_wp) then   ! else the trial is above the strength by round-off alone
-            call next_root(surface, spring, this, x, there, g, low, high, found, alone)
-            if (.not. found) low = high
-            call bracketed_newton(surface, spring, this, low, high, x, there, answer, status)
-            if (status /= friction_ok .or. alone) return
-        end if
-        ! Close to zero slip, two roots also have to differ by more than round-off of the trial.
-        from = x + max(apart * x, 100.0_wp * epsilon(apart) * spring%trial &
-            / (there%stiffness * there%rate))
-        if (from >= spring%x_end) return
-        call slide_to(surface, spring, this, from, there, slid, g)
-        call next_root(surface, spring, this, from, there, g, low, high, found, alone)
-        if (found) status = friction_snap_back
+        here%x = 0.0_wp
+        if (spring%trial > surface%tau_max) call unload_to(surface%tau_max, spring, here%x)
+        call slide_to(surface, spring, this, here)
+        part%last = here
+        if (here%g > 0.0_wp) then
+            call next_root(surface, spring, this, here, part, status)
+            if (status == friction_ok) call pin_down(surface, spring, this, part, here, status)
+            if (status < 0) return
+        else if (here%x > 0.0_wp) then   ! the cap holds
+            here%law%resistance = surface%tau_max
+            here%law%d_slip = 0.0_wp
+            here%law%d_pressure = 0.0_wp
+        end if   ! else the trial is above the strength by round-off alone
+        answer = here%law
+        x = here%x
+
+        if (part%last%x >= spring%x_end) return
+        here = part%last
+        call next_root(surface, spring, this, here, part, status)
+        if (part%holds_root .or. status < 0) status = friction_snap_back
     end subroutine return_along
 
     pure subroutine on_a_line(self, x, there)
@@ -114,95 +151,137 @@ contains
         there%rate = 1.0_wp
     end subroutine on_a_line
 
-    !> Walks from `from` over stretches of the curve that cannot hold a root of g, to the first that
-    !> does.
-    !>
-    !> With L the most that g can rise per slip between a and b, [a, b] holds no root if
-    !> g(b) > L (b - a) > 0 or g(a) < -L (b - a) < 0, and one at most if L <= 0. The spring unloads
-    !> most slowly at the end of a stretch.
-    pure subroutine next_root(surface, spring, this, from, start, g_start, low, high, found, &
-        alone)
-        class(law), intent(in) :: surface
+    !> Where the spring is down at a traction below its trial: Newton's method from the left, where
+    !> a convex curve lets it climb on the root without fail.
+    pure subroutine unload_to(traction, spring, x)
+        real(wp), intent(in) :: traction      !! [F/L^2]
         class(unloading), intent(in) :: spring
-        type(load), intent(in) :: this
-        real(wp), intent(in) :: from         !! x at which the walk starts, before the end
-        type(unloaded), intent(in) :: start  !! the spring there
-        real(wp), intent(in) :: g_start      !! g there [F/L^2]
-        real(wp), intent(out) :: low, high   !! the stretch: x on either side of the root
-        logical, intent(out) :: found        !! false: no root up to the end of the curve
-        logical, intent(out) :: alone        !! no other root follows
-        integer, parameter :: max_stretches = 5000
-        type(sliding) :: there
-        type(unloaded) :: first, last
-        real(wp) :: width, g_low, g_high, rise
-        integer :: stretch
-
-        low = from
-        first = start
-        g_low = g_start
-        found = .false.
-        alone = .false.
-        width = spring%x_end - low
-        do stretch = 1, max_stretches
-            high = min(low + width, spring%x_end)
-            call slide_to(surface, spring, this, high, last, there, g_high)
-            rise = max(0.0_wp, surface%weakening(first%slip, last%slip, this%pressure, this%dt, &
-                this%old) - last%stiffness) * (last%slip - first%slip)
-            if (g_high > rise .or. g_low < -rise) then
-                if (high >= spring%x_end) return
-                low = high
-                first = last
-                g_low = g_high
-                width = 2.0_wp * width
-            else
-                found = g_low > 0.0_wp .and. .not. rise > 0.0_wp   ! down through zero
-                alone = found .and. high >= spring%x_end
-                found = found .or. (g_low <= 0.0_wp .and. g_high > 0.0_wp) &   ! up through zero
-                    .or. width <= epsilon(width) * high            ! touches zero
-                if (found) return
-                width = 0.25_wp * width
-            end if
-        end do
-        found = .true.   ! grazes zero over a long way
-    end subroutine next_root
-
-    !> Root of g between `a`, where g > 0, and `b`, where g <= 0. The bracket may start at zero
-    !> slip, where the resistance can rise at any rate: bisection then halves the exponent, not the
-    !> number.
-    pure subroutine bracketed_newton(surface, spring, this, a, b, x, there, answer, status)
-        class(law), intent(in) :: surface
-        class(unloading), intent(in) :: spring
-        type(load), intent(in) :: this
-        real(wp), intent(in) :: a, b   !! the bracket
-        real(wp), intent(out) :: x     !! the root
-        type(unloaded), intent(out) :: there
-        type(sliding), intent(out) :: answer
-        integer, intent(out) :: status
+        real(wp), intent(out) :: x
         integer, parameter :: max_iterations = 200
-        real(wp) :: low, high, next, g, fall
+        type(unloaded) :: there
+        real(wp) :: step
         integer :: iteration
 
-        low = a
-        high = b
-        x = high
-        status = friction_ok
+        x = 0.0_wp
         do iteration = 1, max_iterations
-            call slide_to(surface, spring, this, x, there, answer, g)
-            if (g > 0.0_wp) then
-                low = x
-            else
-                high = x
-            end if
-            fall = max(there%stiffness + answer%d_slip, epsilon(fall) * there%stiffness)
-            next = x + g / (fall * there%rate)
-            if (abs(next - x) <= 2.0_wp * epsilon(x) * x .or. high - low <= 2.0_wp * epsilon(x) &
-                * high) return
-            if (.not. (next > low .and. next < high)) next = middle(low, high)
-            x = next
+            call spring%at(x, there)
+            step = (there%traction - traction) / (there%stiffness * there%rate)
+            x = min(x + step, spring%x_end)
+            if (step <= epsilon(step) * x) exit
         end do
-        ! A root in the round-off of zero slip has no place of its own.
-        if (abs(g) > 100.0_wp * epsilon(g) * spring%trial) status = friction_no_convergence
-    end subroutine bracketed_newton
+    end subroutine unload_to
+
+    !> Walks over stretches of the curve that are proven to hold no root of g, to the first that
+    !> holds one. Where g comes down through zero it falls all the way along that stretch, so that
+    !> there is one root in it.
+    pure subroutine next_root(surface, spring, this, from, part, status)
+        class(law), intent(in) :: surface
+        class(unloading), intent(in) :: spring
+        type(load), intent(in) :: this
+        type(place), intent(in) :: from      !! where the walk starts, before the end
+        type(stretch), intent(out) :: part   !! where it ends
+        integer, intent(out) :: status       !! ok or no convergence
+        integer, parameter :: max_stretches = 2000
+        real(wp) :: width, least, most
+        integer :: step
+        logical :: crosses, thin, passed
+
+        status = friction_ok
+        part%first = from
+        width = spring%x_end - from%x
+        do step = 1, max_stretches
+            part%last%x = spring%x_end
+            if (width < spring%x_end - part%first%x) part%last%x = part%first%x + width
+            call slide_to(surface, spring, this, part%last)
+            call surface%slopes(part%first%law, part%last%law, this%pressure, this%dt, this%old, &
+                least, most)
+            least = least + part%last%spring%stiffness   ! the spring unloads ever more slowly
+            most = most + part%first%spring%stiffness
+
+            thin = part%last%x - part%first%x <= 2.0_wp * epsilon(width) * part%last%x
+            crosses = (part%first%g > 0.0_wp) .neqv. (part%last%g > 0.0_wp)
+            part%holds_root = crosses .and. (thin .or. least >= 0.0_wp .or. part%last%g > 0.0_wp)
+            if (part%holds_root) return
+            passed = .false.
+            if (.not. crosses) passed = thin .or. keeps_sign(part, least, most)
+            if (passed) then
+                if (part%last%x >= spring%x_end) return
+                part%first = part%last
+                width = 2.0_wp * width
+            else
+                width = 0.25_wp * (part%last%x - part%first%x)
+            end if
+        end do
+        status = friction_no_convergence
+    end subroutine next_root
+
+    !> Is g above zero (or below it) all along a stretch, if it falls per slip by `least` to `most`?
+    !> The straight lines from both ends with the steepest slopes that this allows enclose it.
+    pure function keeps_sign(part, least, most) result(keeps)
+        type(stretch), intent(in) :: part      !! g has the same sign at both ends
+        real(wp), intent(in) :: least, most    !! [F/L^3]
+        logical :: keeps
+        real(wp) :: first, last, approach, retreat, share
+
+        first = abs(part%first%g)
+        last = abs(part%last%g)
+        approach = most     ! to zero
+        retreat = -least    ! from it, all that `last` can have gained on the way
+        if (.not. part%first%g > 0.0_wp) then
+            approach = -least
+            retreat = most
+        end if
+        keeps = retreat <= 0.0_wp .or. approach <= 0.0_wp
+        if (keeps .or. retreat >= unbounded) return
+        last = last - retreat * (part%last%law%slip - part%first%law%slip)
+        keeps = last > 0.0_wp
+        if (keeps .or. approach >= unbounded) return
+        share = retreat / (retreat + approach)
+        keeps = share * first + (1.0_wp - share) * last > 0.0_wp
+    end function keeps_sign
+
+    !> The root of g in a stretch along which it falls through zero; or its end, where only
+    !> round-off is left of the traction. The stretch may start at zero slip, where the resistance
+    !> can rise at any rate: bisection then halves the exponent, not the number.
+    pure subroutine pin_down(surface, spring, this, part, root, status)
+        class(law), intent(in) :: surface
+        class(unloading), intent(in) :: spring
+        type(load), intent(in) :: this
+        type(stretch), intent(in) :: part
+        type(place), intent(out) :: root
+        integer, intent(out) :: status     !! ok or no convergence
+        integer, parameter :: max_iterations = 200
+        real(wp), parameter :: round_off = epsilon(round_off)
+        real(wp) :: low, high, next, step, last_step, fall, scale
+        integer :: iteration
+
+        low = part%first%x
+        high = part%last%x
+        root = part%last
+        last_step = high - low
+        do iteration = 1, max_iterations
+            fall = (root%spring%stiffness + root%law%d_slip) * root%spring%rate
+            scale = spring%trial + root%law%resistance
+            if (abs(root%g) <= round_off * scale .or. high - low <= 2.0_wp * round_off * high) exit
+            if (root%g > 0.0_wp) then
+                low = root%x
+            else
+                high = root%x
+            end if
+            next = middle(low, high)
+            if (fall > 0.0_wp .and. abs(root%g) < 0.5_wp * fall * last_step) then
+                step = root%g / fall
+                if (abs(step) <= round_off * root%x) exit
+                if (root%x + step > low .and. root%x + step < high) next = root%x + step
+            end if
+            last_step = abs(next - root%x)
+            root%x = next
+            call slide_to(surface, spring, this, root)
+        end do
+        status = friction_ok
+        if (abs(root%g) <= 100.0_wp * round_off * (scale + root%x * abs(fall))) return
+        status = friction_no_convergence
+    end subroutine pin_down
 
     pure function middle(low, high) result(x)
         real(wp), intent(in) :: low, high   !! 0 <= low < high
@@ -216,20 +295,17 @@ contains
     end function middle
 
     !> Spring and law at x, and g there.
-    pure subroutine slide_to(surface, spring, this, x, there, slid, g)
+    pure subroutine slide_to(surface, spring, this, there)
         class(law), intent(in) :: surface
         class(unloading), intent(in) :: spring
         type(load), intent(in) :: this
-        real(wp), intent(in) :: x
-        type(unloaded), intent(out) :: there
-        type(sliding), intent(out) :: slid
-        real(wp), intent(out) :: g          !! [F/L^2]
+        type(place), intent(inout) :: there   !! in: x, out: all the rest
 
-        call spring%at(x, there)
-        slid%slip = there%slip
-        call surface%slide(slid%slip, this%pressure, this%dt, this%old, slid%state, &
-            slid%resistance, slid%d_slip, slid%d_pressure)
-        g = there%traction - slid%resistance
+        call spring%at(there%x, there%spring)
+        there%law%slip = there%spring%slip
+        call surface%slide_uncapped(there%law%slip, this%pressure, this%dt, this%old, &
+            there%law%state, there%law%resistance, there%law%d_slip, there%law%d_pressure)
+        there%g = there%spring%traction - there%law%resistance
     end subroutine slide_to
 
 end module friction_return_map

@@ -16,8 +16,9 @@
 !> that small are the reason why the arithmetic is in logarithms. Below 1e-100 d_c the resistance is
 !> taken as proportional to the slip, so that it starts from zero and every number stays in range.
 module friction_rate_state_law
-    use friction_kinds, only : wp
-    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding
+    use friction_kinds, only : largest, wp
+    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding, &
+        unbounded
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
@@ -45,7 +46,7 @@ module friction_rate_state_law
         procedure :: state_rates
         procedure :: resistance_at
         procedure :: traits
-        procedure :: weakening
+        procedure :: slopes
         procedure :: needs_time
         procedure :: solve
     end type rate_state_law
@@ -119,7 +120,7 @@ contains
 
         new%mu = 0.0_wp
         new%r = old%r
-        if (self%evolution == ageing) new%r = old%r + dt
+        if (self%evolution == ageing) new%r = min(old%r + dt, largest)
         strength = 0.0_wp
     end subroutine rest
 
@@ -136,10 +137,11 @@ contains
         call evolve(self, s, dt, old%r, new%r, ln_theta, by_ln_slip)
         x = direct_exponent(self, s, dt, ln_theta)
         new%mu = self%a * asinh_exp(x)
-        d_slip = pressure * slope_asinh_exp(x) * ((self%a + self%b * by_ln_slip) / s)
+        d_slip = pressure * min(slope_asinh_exp(x) * ((self%a + self%b * by_ln_slip) / s), &
+            unbounded)
         if (slip < least) then
             part = slip / least
-            d_slip = pressure * new%mu / least
+            d_slip = pressure * min(new%mu / least, unbounded)
             new%mu = part * new%mu
         end if
         d_pressure = new%mu
@@ -172,48 +174,87 @@ contains
         end if
     end subroutine evolve
 
-    !> A rigorous bound: each factor of
+    !> The factors of the slope
     !>
-    !>     -d(resistance)/d(slip) = p e^X/sqrt(1 + e^2X) (b e/d_c - a/slip),  e = -d(ln theta)/dx
+    !>     p S (a/slip - b e/d_c),   S = e^X/sqrt(1 + e^2X),   e = -d(ln theta)/dx
     !>
-    !> taken where it is largest; the first is below 1.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+    !> where each is least and largest. X grows with ln(slip) + b/a ln(theta), of which the first
+    !> only grows, and theta has one peak at most.
+    pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
         class(rate_state_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
+        type(sliding), intent(in) :: first, last
+        real(wp), intent(in) :: pressure, dt
         type(law_state), intent(in) :: old
-        real(wp) :: bound
-        real(wp) :: e
+        real(wp), intent(out) :: least, most
+        real(wp) :: from, y_first, e_low, e_high, grown, shrunk, high, low, s_high, s_low
 
-        e = fastest_evolution(self, from, to, dt, old%r)
-        bound = max(0.0_wp, self%b * e / self%d_c - self%a / max(to, least_slip * self%d_c)) &
-            * pressure
-    end function weakening
-
-    !> Upper bound of -d(ln theta)/dx between two slips.
-    pure function fastest_evolution(self, from, to, dt, theta_n) result(e)
-        class(rate_state_law), intent(in) :: self
-        real(wp), intent(in) :: from, to    !! slips, 0 <= from < to [L]
-        real(wp), intent(in) :: dt          !! > 0 [T]
-        real(wp), intent(in) :: theta_n     !! at the start of the increment, > 0 [T]
-        real(wp) :: e                       !! [-]
-        real(wp), parameter :: small = 1.0e-3_wp
-        real(wp) :: x1, x2, left1, left2, mean1, fall1, w
-
-        x1 = from / self%d_c
-        x2 = max(to / self%d_c, least_slip)
-        left1 = exp(-x1)
-        left2 = exp(-x2)
-        mean1 = mean_decay(x1, left1)
-        if (self%evolution == ageing) then
-            fall1 = 0.5_wp   ! how fast the mean decays: slower where x is larger
-            if (x1 > small) fall1 = (mean1 - left1) / x1
-            e = min(1.0_wp, (theta_n * left1 + dt * fall1) &
-                / max(theta_n * left2 + dt * mean_decay(x2, left2), tiny(dt)))
-        else
-            w = log(x2) + log(theta_n) - log(dt)
-            e = merge(left1, left2, w > 0.0_wp) * w + mean1
+        from = max(first%slip, least_slip * self%d_c)
+        y_first = first%state%mu / self%a
+        if (first%slip < from) y_first = first%d_slip * (from / (pressure * self%a))
+        if (last%slip <= from) then   ! both in the part that is a straight line
+            least = min(first%d_slip, last%d_slip)
+            most = max(first%d_slip, last%d_slip)
+            return
         end if
-    end function fastest_evolution
+        call evolution_bounds(self, from, last%slip, dt, old%r, e_low, e_high)
+        ! ln(theta) above its last value, and below its first one
+        grown = max(0.0_wp, e_high * ((last%slip - from) / self%d_c))
+        shrunk = max(0.0_wp, log(first%state%r) - log(last%state%r))
+        s_high = slope_of_asinh(last%state%mu / self%a, self%b / self%a * grown)
+        s_low = slope_of_asinh(y_first, -self%b / self%a * shrunk)
+        low = self%a / last%slip - (self%b / self%d_c) * e_high
+        high = self%a / from - (self%b / self%d_c) * e_low
+        least = pressure * low * merge(s_high, s_low, low < 0.0_wp)
+        most = pressure * high * merge(s_high, s_low, high > 0.0_wp)
+        if (first%slip < from) then
+            least = min(least, first%d_slip)
+            most = max(most, first%d_slip)
+        end if
+    end subroutine slopes
+
+    !> The derivative of asinh(e^X), where that is y, after X has changed.
+    pure function slope_of_asinh(y, change) result(slope)
+        real(wp), intent(in) :: y        !! >= 0
+        real(wp), intent(in) :: change   !! of X
+        real(wp) :: slope                !! 0 to 1
+        real(wp), parameter :: far = 600.0_wp
+
+        slope = 0.0_wp
+        if (y > 1.0_wp) then
+            slope = slope_asinh_exp(min(max(y - ln_2 + log(1.0_wp - exp(-2.0_wp * y)) + change, &
+                -far), far))
+        else if (y > 0.0_wp) then
+            slope = slope_asinh_exp(min(max(log(sinh(y)) + change, -far), far))
+        end if
+    end function slope_of_asinh
+
+    !> Bounds of e = -d(ln theta)/dx between two slips.
+    !>
+    !>     ageing law:  e = (theta_n e^-x + dt fall)/theta,  fall = -d/dx (1 - e^-x)/x
+    !>     slip law:    e = (1 - e^-x)/x - e^-x pull,        pull = ln(dt/x) - ln(theta_n)
+    pure subroutine evolution_bounds(self, from, to, dt, theta_n, e_low, e_high)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: from, to       !! slips, 0 < from < to [L]
+        real(wp), intent(in) :: dt             !! > 0 [T]
+        real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
+        real(wp), intent(out) :: e_low, e_high !! [-]
+        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2)
+
+        x = [from, to] / self%d_c
+        left = exp(-x)
+        mean = [mean_decay(x(1), left(1)), mean_decay(x(2), left(2))]
+        if (self%evolution == ageing) then
+            fall = [fall_of_mean(x(1), left(1), mean(1)), fall_of_mean(x(2), left(2), mean(2))]
+            theta = max(theta_n * left + dt * mean, tiny(dt))
+            fall = theta_n * left + dt * fall
+            e_low = fall(2) / theta(1)
+            e_high = min(1.0_wp, fall(1) / theta(2))
+        else
+            pull = log(dt) - log(x) - log(theta_n)
+            e_low = mean(2) - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
+            e_high = mean(1) - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
+        end if
+    end subroutine evolution_bounds
 
     !> Newton's method in ln(slip), bracketed, where there can be one equilibrium only.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
@@ -223,14 +264,15 @@ contains
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 100
-        real(wp) :: small, low, high, misfit, fall, step
+        real(wp) :: small, low, high, misfit, fall, step, e_low, e_high
         integer :: iteration
 
         solved = .false.
         low = least_slip * self%d_c
         high = trial / stiffness
         if (.not. low < high) return
-        if (self%weakening(0.0_wp, high, pressure, dt, old) > stiffness) return
+        call evolution_bounds(self, low, high, dt, old%r, e_low, e_high)
+        if (pressure * (self%b * e_high / self%d_c - self%a / high) > stiffness) return
 
         small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
         answer%slip = max(low, creep(self, trial, pressure, dt, old%r, high))
@@ -370,5 +412,21 @@ contains
             mean = 1.0_wp
         end if
     end function mean_decay
+
+    !> Minus the derivative of that by x, 1/2 at x = 0; it shrinks with x.
+    pure function fall_of_mean(x, left, mean) result(fall)
+        real(wp), intent(in) :: x      !! >= 0
+        real(wp), intent(in) :: left   !! e^-x
+        real(wp), intent(in) :: mean   !! (1 - e^-x)/x
+        real(wp) :: fall
+        real(wp), parameter :: small = 1.0e-3_wp   !! below, the series is exact to round-off
+
+        if (x > small) then
+            fall = (mean - left) / x
+        else
+            fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
+                / 144.0_wp)))
+        end if
+    end function fall_of_mean
 
 end module friction_rate_state_law

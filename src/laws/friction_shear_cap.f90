@@ -15,7 +15,6 @@ module friction_shear_cap
 
     type, extends(law) :: capped_law
         class(law), pointer :: inner   !! the law without the cap
-        real(wp) :: tau_max            !! largest tangential traction, > 0 [F/L^2]
     contains
         procedure :: virgin
         procedure :: admits
@@ -25,7 +24,8 @@ module friction_shear_cap
         procedure :: state_rates
         procedure :: resistance_at
         procedure :: traits
-        procedure :: weakening
+        procedure :: slide_uncapped
+        procedure :: slopes
         procedure :: needs_time
         procedure :: solve
     end type capped_law
@@ -72,15 +72,26 @@ contains
         d_pressure = 0.0_wp
     end subroutine slide
 
-    !> No faster than the law's own resistance falls.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+    pure subroutine slide_uncapped(self, slip, pressure, dt, old, new, resistance, d_slip, &
+        d_pressure)
         class(capped_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
+        real(wp), intent(in) :: slip, pressure, dt
         type(law_state), intent(in) :: old
-        real(wp) :: bound
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
 
-        bound = max(0.0_wp, self%inner%weakening(from, to, pressure, dt, old))
-    end function weakening
+        call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+    end subroutine slide_uncapped
+
+    pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
+        class(capped_law), intent(in) :: self
+        type(sliding), intent(in) :: first, last
+        real(wp), intent(in) :: pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp), intent(out) :: least, most
+
+        call self%inner%slopes(first, last, pressure, dt, old, least, most)
+    end subroutine slopes
 
     !> At the cap, the slip that keeps the traction there, or more where the law itself asks for it.
     !> Where its own strength is higher, the law has no say unless that falls with the slip rate.
@@ -141,30 +152,13 @@ contains
         needs = self%inner%needs_time()
     end function needs_time
 
-    !> No equilibrium lies above the cap, so none at less slip than `s`, where the spring is down
-    !> at the cap: either that slip is one, or the law's own equilibrium beyond it.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
         class(capped_law), intent(in) :: self
         real(wp), intent(in) :: trial, stiffness, pressure, dt
         type(law_state), intent(in) :: old
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
-        type(law_state) :: at_rest
-        real(wp) :: s, strength
 
-        s = (trial - self%tau_max) / stiffness
-        if (s > 0.0_wp) then
-            call self%slide(s, pressure, dt, old, answer%state, answer%resistance, answer%d_slip, &
-                answer%d_pressure)
-            if (answer%resistance >= self%tau_max) then
-                answer%slip = s
-                solved = self%inner%weakening(s, trial / stiffness, pressure, dt, old) <= stiffness
-                return
-            end if
-            call self%inner%rest(trial, pressure, dt, old, at_rest, strength)
-            solved = .false.
-            if (trial <= strength) return   ! for the law alone this increment would not slip
-        end if
         call self%inner%solve(trial, stiffness, pressure, dt, old, answer, solved)
     end subroutine solve
 

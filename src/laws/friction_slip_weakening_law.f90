@@ -27,7 +27,6 @@ module friction_slip_weakening_law
         procedure :: slip_rate
         procedure :: state_rates
         procedure :: traits
-        procedure :: weakening
         procedure :: solve
     end type slip_weakening_law
 
@@ -91,15 +90,6 @@ contains
         resistance = new%mu * pressure
         d_slip = -fall(self, new%r, pressure)
     end subroutine slide
-
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
-        class(slip_weakening_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
-        type(law_state), intent(in) :: old
-        real(wp) :: bound
-
-        bound = fall(self, old%r + from, pressure)
-    end function weakening
 
     !> Two straight lines, the lower of which counts.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)

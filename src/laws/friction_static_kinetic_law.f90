@@ -28,7 +28,6 @@ module friction_static_kinetic_law
         procedure :: state_rates
         procedure :: resistance_at
         procedure :: traits
-        procedure :: weakening
         procedure :: needs_time
         procedure :: solve
     end type static_kinetic_law
@@ -102,18 +101,6 @@ contains
         resistance = new%mu * pressure
         d_slip = -rate * excess * pressure
     end subroutine slide
-
-    !> The resistance falls ever slower.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
-        class(static_kinetic_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
-        type(law_state), intent(in) :: old
-        real(wp) :: bound
-        real(wp) :: rate
-
-        rate = decay_per_slip(self, dt)
-        bound = rate * (self%mu_s - self%mu_k) * exp(-rate * from) * pressure
-    end function weakening
 
     !> Newton's method from the right, where a concave equation lets it fall on the root without
     !> fail.

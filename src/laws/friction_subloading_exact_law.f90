@@ -21,7 +21,7 @@ module friction_subloading_exact_law
         procedure :: start_rate
         procedure :: rest
         procedure :: slide
-        procedure :: weakening
+        procedure :: fall_of_mu
         procedure :: solve
     end type subloading_exact_law
 
@@ -51,7 +51,7 @@ contains
         full = new%mu * pressure
         strength = old%r * full
         new%r = 0.0_wp
-        if (full > 0.0_wp) new%r = min(traction / full, 1.0_wp)
+        if (full > 0.0_wp) new%r = traction / max(full, traction)
     end subroutine rest
 
     pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
@@ -69,20 +69,15 @@ contains
         d_slip = pressure * (new%mu * self%m * y - new%r * fall)
     end subroutine slide
 
-    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one
-    !> end.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+    pure function fall_of_mu(self, slip, dt, old) result(fall)
         class(subloading_exact_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
+        real(wp), intent(in) :: slip, dt
         type(law_state), intent(in) :: old
-        real(wp) :: bound
-        real(wp) :: mu, fall, mu_to, fall_to, r, y
+        real(wp) :: fall
+        real(wp) :: mu
 
-        call friction_coefficient(self, from, dt, old, mu, fall)
-        call friction_coefficient(self, to, dt, old, mu_to, fall_to)
-        call similarity_ratio(old%r, self%m * to, r, y)
-        bound = pressure * (r * fall - mu_to * self%m * y)
-    end function weakening
+        call friction_coefficient(self, slip, dt, old, mu, fall)
+    end function fall_of_mu
 
     !> The pair (s, ln y) by Newton's method; three or four iterations as a rule.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
@@ -95,12 +90,15 @@ contains
         real(wp), parameter :: small_step = 1.0e-8_wp   ! the next error is its square
         real(wp), parameter :: y_largest = 200.0_wp     ! far from where exp(y) overflows
         real(wp), parameter :: steepest = 10.0_wp       ! for the start, where -ln R has no bound
+        real(wp), parameter :: too_large = 2.0_wp**400  ! for its squares
         real(wp) :: v_n, rate, mu, fall, s, r, y, lag, d, ds, dz
         integer :: iteration
 
         solved = .false.
         call friction_coefficient(self, 0.0_wp, dt, old, mu, fall)
         if (stiffness <= pressure * fall) return   ! several equilibria possible
+        if (self%m * (mu * pressure + trial) > too_large &
+            .or. .not. trial > old%r * mu * pressure) return
         v_n = 0.0_wp
         rate = self%m * steepest
         if (old%r >= 1.0_wp) then

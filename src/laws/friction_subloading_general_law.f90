@@ -29,7 +29,6 @@ module friction_subloading_general_law
         integer :: u_of_r   !! one of the last two above
     contains
         procedure :: slide
-        procedure :: weakening
         procedure :: solve
         procedure :: u_of
     end type subloading_general_law
@@ -52,21 +51,6 @@ contains
         resistance = d_pressure * pressure
         d_slip = pressure * (new%mu * rate - new%r * fall)
     end subroutine slide
-
-    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one
-    !> end.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
-        class(subloading_general_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
-        type(law_state), intent(in) :: old
-        real(wp) :: bound
-        real(wp) :: mu, fall, mu_to, fall_to, r, rate
-
-        call friction_coefficient(self, from, dt, old, mu, fall)
-        call friction_coefficient(self, to, dt, old, mu_to, fall_to)
-        call similarity_ratio(self, old%r, to, r, rate)
-        bound = pressure * (r * fall - mu_to * rate)
-    end function weakening
 
     !> Newton's method in the slip, bracketed, where there can be one equilibrium only.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
@@ -155,7 +139,7 @@ contains
         c = (old%mu - self%mu_k) + self%xi * dt * (self%mu_s - self%mu_k)
         w = 1.0_wp + self%kappa * slip + self%xi * dt
         mu = min(max(self%mu_k + c / w, self%mu_k), self%mu_s)
-        fall = self%kappa * c / w**2
+        fall = (self%kappa / w) * (c / w)
     end subroutine friction_coefficient
 
     !> R after a slip, and dR/ds.

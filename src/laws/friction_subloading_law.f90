@@ -13,7 +13,8 @@
 !> and `e = 1 - r`.
 module friction_subloading_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding
+    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding, &
+        unbounded
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -36,7 +37,8 @@ module friction_subloading_law
         procedure :: state_rates
         procedure :: traits
         procedure :: u_of
-        procedure :: weakening
+        procedure :: slopes
+        procedure :: fall_of_mu
         procedure :: solve
     end type subloading_law
 
@@ -98,7 +100,7 @@ contains
         full = new%mu * pressure
         strength = old%r * full
         new%r = 0.0_wp
-        if (full > 0.0_wp) new%r = min(traction / full, 1.0_wp)
+        if (full > 0.0_wp) new%r = traction / max(full, traction)
     end subroutine rest
 
     pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
@@ -117,25 +119,39 @@ contains
         resistance = d_pressure * pressure
         d_slip = 0.0_wp
         if (new%r > 0.0_wp) d_slip = pressure * (new%mu * ratio_rate(self%m, slip, new%r, log_r) &
-            - new%r * self%kappa * c / w**2)
+            - new%r * (self%kappa / w) * (c / w))
     end subroutine slide
 
-    !> With mu falling ever slower and R rising ever slower, the worst of each factor stands at one
-    !> end.
-    pure function weakening(self, from, to, pressure, dt, old) result(bound)
+    !> The slope is p (mu dR/ds - R fall), with R rising ever slower and mu falling ever slower: the
+    !> first product only shrinks, and of the second the worst of each factor stands at one end.
+    pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
         class(subloading_law), intent(in) :: self
-        real(wp), intent(in) :: from, to, pressure, dt
+        type(sliding), intent(in) :: first, last
+        real(wp), intent(in) :: pressure, dt
         type(law_state), intent(in) :: old
-        real(wp) :: bound
-        real(wp) :: c, w0, r, log_r
+        real(wp), intent(out) :: least, most
+        real(wp), parameter :: steep = 1.0e-30_wp   ! below, R may rise at any rate
+        real(wp) :: fall_first, fall_last
 
-        c = weakening_reserve(self, dt, old)
-        w0 = 1.0_wp + self%xi * dt
-        call similarity_ratio(old%r, self%m * to, r, log_r)
-        bound = pressure * (r * self%kappa * c / (w0 + self%kappa * from)**2 &
-            - friction_coefficient(self, w0 + self%kappa * to, c) &
-            * ratio_rate(self%m, to, r, log_r))
-    end function weakening
+        fall_first = pressure * self%fall_of_mu(first%slip, dt, old)
+        fall_last = pressure * self%fall_of_mu(last%slip, dt, old)
+        least = last%d_slip - last%state%r * (fall_first - fall_last)
+        most = unbounded
+        if (first%state%r > steep) most = first%d_slip + first%state%r * (fall_first - fall_last)
+    end subroutine slopes
+
+    !> -d(mu)/ds, which is never negative and shrinks with the slip.
+    pure function fall_of_mu(self, slip, dt, old) result(fall)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: slip          !! in the increment, >= 0 [L]
+        real(wp), intent(in) :: dt            !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old    !! state at the start of the increment
+        real(wp) :: fall                      !! [1/L]
+        real(wp) :: w
+
+        w = 1.0_wp + self%xi * dt + self%kappa * slip
+        fall = (self%kappa / w) * (weakening_reserve(self, dt, old) / w)
+    end function fall_of_mu
 
     !> The pair (s, R) by Chebyshev's method, Newton's third-order kin: one logarithm an iteration,
     !> one or two iterations as a rule after either of two starts (docs/theory.md, section 3).
@@ -147,6 +163,7 @@ contains
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 12
         real(wp), parameter :: third = 1.0_wp / 3.0_wp
+        real(wp), parameter :: too_large = 2.0_wp**400   ! for the squares below
         real(wp) :: c, w0, full, excess, s, r, e, iw, mu, mu_rate, log_r, r_rate, ms, gain, slack, &
             misfit, ir, z, d, ds, dr, bend_s, bend_r
         integer :: iteration
@@ -155,11 +172,11 @@ contains
         solved = .false.
         c = weakening_reserve(self, dt, old)
         w0 = 1.0_wp + self%xi * dt
-        if (stiffness * w0**2 <= pressure * self%kappa * c) return   ! several equilibria possible
-
         iw = 1.0_wp / w0
+        if (stiffness * w0 <= pressure * self%kappa * (c * iw)) return   ! several are possible
         full = (self%mu_k + c * iw) * pressure
         excess = trial - old%r * full
+        if (self%m * (full + trial) + self%kappa * w0 > too_large .or. .not. excess > 0.0_wp) return
         call start_near(self, c, iw, excess, stiffness, pressure, old%r, s, r, e, near)
         if (.not. near) call start_far(self, excess, full, stiffness, old%r, s, r, e)
         if (.not. r > 0.0_wp) return
