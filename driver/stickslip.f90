@@ -1,16 +1,15 @@
 !> stickslip: a spring-slider on the friction routine that finite-element codes use.
 program stickslip
     use, intrinsic :: iso_fortran_env, only : error_unit
+    use check, only : check_input
     use command_line, only : command, print_help, print_version, read_command_line
     use platform, only : exit_program
-    use point_study, only : check_point, is_point_input, run_point
-    use run_settings, only : settings
+    use point_study, only : run_point
+    use study, only : run_input
     use sweep, only : sweep_input
-    use study, only : check_input, run_input
     use verb_common, only : exit_bad_input, exit_done
     implicit none
     type(command) :: wanted
-    type(settings) :: run
     integer :: exit_status
 
     call read_command_line(wanted)
@@ -29,11 +28,7 @@ program stickslip
     case ('sweep')
         call sweep_input(wanted, exit_status)
     case ('check')
-        if (is_point_input(wanted%input)) then
-            call check_point(wanted, exit_status)
-        else
-            call check_input(wanted, run, exit_status)
-        end if
+        call check_input(wanted%input, exit_status)
     case ('--version')
         call print_version()
     case default

@@ -155,10 +155,12 @@ contains
             if (.not. present(default)) call self%require(group, key)
             return
         end if
-        call self%get_reals(group, key, values, allowed)
         if (has_subscript(self, group, key)) then
             call self%reject(group, key, 'takes one value, and no subscript')
-        else if (size(values) > 1) then
+            return
+        end if
+        call self%get_reals(group, key, values, allowed)
+        if (size(values) > 1) then
             call self%reject(group, key, 'takes one value, not ' // whole(size(values)))
         end if
         if (size(values) > 0) value = values(1)

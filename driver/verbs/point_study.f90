@@ -1,21 +1,21 @@
-!> The point mode: checks its input, takes one contact point along its path, and reports.
+!> The verb point: takes one contact point along its path, and reports.
 module point_study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
     use command_line, only : command
     use friction_mod, only : friction_message, statev_dissipation, statev_slip
     use material_point, only : contact_point, load_report, virgin_point
-    use namelist_input, only : namelist_file, read_namelist_file
+    use namelist_input, only : namelist_file
     use point_picture, only : draw_point_picture
     use point_recorder, only : point_csv
-    use point_reader, only : group, read_point_settings
+    use point_reader, only : read_point_settings
     use point_settings, only : point_run
     use progress_bar, only : progress
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        is_readable, tell_failure
+        has_faults, is_for, is_readable, tell_failure
     implicit none
     private
 
-    public :: check_point, is_point_input, run_point
+    public :: run_point
 
     !> The largest value that a quantity takes, and when.
     type :: peak
@@ -36,44 +36,6 @@ module point_study
 
 contains
 
-    !> Is this an input of the point mode? Files that cannot be read are not.
-    function is_point_input(name) result(is_point)
-        character(len=*), intent(in) :: name
-        logical :: is_point
-        type(namelist_file) :: file
-        character(len=:), allocatable :: problem
-
-        call read_namelist_file(name, file, problem)
-        is_point = file%has_group(group)
-    end function is_point_input
-
-    !> Reads and validates; says what is wrong, all of it.
-    subroutine read_input(wanted, run, exit_status)
-        type(command), intent(in) :: wanted
-        type(point_run), intent(out) :: run
-        integer, intent(out) :: exit_status
-        type(namelist_file) :: file
-
-        exit_status = exit_bad_input
-        if (.not. is_readable(wanted%input, file)) return
-        call read_point_settings(file, run)
-        if (size(file%faults) > 0) then
-            write (error_unit, '(a)', advance='no') file%describe_faults()
-            return
-        end if
-        exit_status = exit_done
-    end subroutine read_input
-
-    subroutine check_point(wanted, exit_status)
-        type(command), intent(in) :: wanted
-        integer, intent(out) :: exit_status
-        type(point_run) :: run
-
-        call read_input(wanted, run, exit_status)
-        if (exit_status == exit_done) write (output_unit, '(2a, i0, a)') wanted%input, &
-            ': valid, ', nint(run%loading%increments()), ' increments'
-    end subroutine check_point
-
     !> Reads, validates, follows the path and reports. What has been computed stays on disk.
     subroutine run_point(wanted, exit_status)
         type(command), intent(in) :: wanted
@@ -82,12 +44,14 @@ contains
         type(point_csv) :: records
         type(contact_point) :: point
         type(outcome) :: result
+        type(namelist_file) :: file
         character(len=:), allocatable :: problem, base
 
-        call read_input(wanted, run, exit_status)
-        if (exit_status /= exit_done) return
-
         exit_status = exit_bad_input
+        if (.not. is_readable(wanted%input, file)) return
+        if (.not. is_for('point', file)) return
+        call read_point_settings(file, run)
+        if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem
         if (.not. directory_is_ready(wanted%output)) return
         call records%start(base // '.csv', run%loading%ndir, run%tangent)

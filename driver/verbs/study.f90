@@ -1,4 +1,4 @@
-!> The program's two verbs: check an input file, and run it.
+!> The verb run: simulates what an input file describes, and reports.
 module study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
     use chain_picture, only : draw_catalogue, draw_fields
@@ -16,63 +16,31 @@ module study
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
     use summary, only : print_event_times, print_summary
-    use sweep_reader, only : read_sweep
-    use sweep_settings, only : sweep_plan
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        is_readable, tell_failure
+        has_faults, is_for, is_readable, tell_failure
     implicit none
     private
 
-    public :: check_input, run_input
+    public :: run_input
 
 contains
 
     !> Reads and validates; says what is wrong, all of it.
-    subroutine check_input(wanted, run, exit_status)
-        type(command), intent(in) :: wanted
+    subroutine read_input(input, run, exit_status)
+        character(len=*), intent(in) :: input
         type(settings), intent(out) :: run
         integer, intent(out) :: exit_status
         type(namelist_file) :: file
-        type(sweep_plan) :: plan
-        logical :: swept
 
         exit_status = exit_bad_input
-        if (.not. is_readable(wanted%input, file)) return
-        swept = .false.
-        if (wanted%verb == 'check') swept = file%has_group('sweep')
-        if (swept) then
-            call read_sweep(file, plan)
-        else
-            call read_settings(file, run)
-            if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
-                .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
-                // 'blocks needs NetCDF, which this program was built without')
-        end if
-        if (size(file%faults) > 0) then
-            write (error_unit, '(a)', advance='no') file%describe_faults()
-            if (file%has_group('point')) call tell_verb('point', wanted%input)
-            if (.not. swept .and. file%has_group('sweep')) call tell_verb('sweep', wanted%input)
-            return
-        end if
-        exit_status = exit_done
-        if (wanted%verb /= 'check') return
-        if (swept) then
-            write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', size(plan%runs), &
-                ' combinations'
-        else if (run%adaptive) then
-            write (output_unit, '(2a)') wanted%input, ': valid, adaptive steps'
-        else
-            write (output_unit, '(2a, i0, a)') wanted%input, ': valid, ', run%n_steps, ' steps'
-        end if
-    end subroutine check_input
-
-    !> An input of another verb was given.
-    subroutine tell_verb(verb, input)
-        character(len=*), intent(in) :: verb, input
-
-        write (error_unit, '(6a)') 'stickslip: for the group &', verb, ': stickslip ', verb, ' ', &
-            input
-    end subroutine tell_verb
+        if (.not. is_readable(input, file)) return
+        if (.not. is_for('run', file)) return
+        call read_settings(file, run)
+        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
+            .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
+            // 'blocks needs NetCDF, which this program was built without')
+        if (.not. has_faults(file)) exit_status = exit_done
+    end subroutine read_input
 
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.
     subroutine run_input(wanted, exit_status)
@@ -84,7 +52,7 @@ contains
         type(outcome) :: result
         character(len=:), allocatable :: problem, base
 
-        call check_input(wanted, run, exit_status)
+        call read_input(wanted%input, run, exit_status)
         if (exit_status /= exit_done) return
 
         exit_status = exit_bad_input

@@ -5,7 +5,7 @@ module sweep
     use child_process, only : child, wait_for_one
     use command_line, only : command
     use friction_mod, only : friction_version
-    use namelist_input, only : namelist_file, read_namelist_file
+    use namelist_input, only : namelist_file
     use platform, only : cores, make_directory, rename_file
     use progress_bar, only : progress
     use run_observer, only : observer_slot
@@ -18,7 +18,7 @@ module sweep
     use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
     use text_file, only : output_file
-    use verb_common, only : exit_bad_input, exit_done, exit_failed
+    use verb_common, only : exit_bad_input, exit_done, exit_failed, has_faults, is_for, is_readable
     implicit none
     private
 
@@ -30,6 +30,7 @@ contains
     subroutine sweep_input(wanted, exit_status)
         type(command), intent(in) :: wanted
         integer, intent(out) :: exit_status
+        type(namelist_file) :: file
         type(sweep_plan) :: plan
         type(journal) :: done
         type(text_line), allocatable :: rows(:)
@@ -37,9 +38,12 @@ contains
         integer :: found, failures
 
         exit_status = exit_bad_input
-        call read_plan(wanted%input, plan, problem)
+        if (.not. is_readable(wanted%input, file)) return
+        if (.not. is_for('sweep', file)) return
+        call read_plan(file, plan)
+        if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem // '_sweep'
-        if (len(problem) == 0) call open_journal(wanted%output, base, plan, done, rows, problem)
+        call open_journal(wanted%output, base, plan, done, rows, problem)
         if (len(problem) > 0) then
             write (error_unit, '(a)') problem
             return
@@ -61,25 +65,14 @@ contains
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine sweep_input
 
-    !> `problem` is empty, or all faults of the input.
-    subroutine read_plan(name, plan, problem)
-        character(len=*), intent(in) :: name
+    !> All combinations, as a sweep runs them; every fault is left in `file%faults`.
+    subroutine read_plan(file, plan)
+        type(namelist_file), intent(inout) :: file
         type(sweep_plan), intent(out) :: plan
-        character(len=:), allocatable, intent(out) :: problem
-        type(namelist_file) :: file
         integer :: i
 
-        call read_namelist_file(name, file, problem)
-        if (len(problem) > 0) then
-            problem = 'stickslip: ' // name // ': ' // problem
-            return
-        end if
         call read_sweep(file, plan)
-        problem = file%describe_faults()
-        if (len(problem) > 0) then
-            problem = problem(:len(problem) - 1)   ! its last newline
-            return
-        end if
+        if (size(file%faults) > 0) return
         do i = 1, size(plan%runs)
             call plan%runs(i)%drive%divide(late_from(plan%runs(i)))
             plan%runs(i)%interval = huge(plan%runs(i)%interval)   ! no series is kept

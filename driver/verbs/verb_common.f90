@@ -6,7 +6,7 @@ module verb_common
     implicit none
     private
 
-    public :: directory_is_ready, is_readable, tell_failure
+    public :: directory_is_ready, has_faults, is_for, is_readable, tell_failure, verb_of
 
     integer, parameter, public :: exit_done = 0, exit_failed = 1, exit_bad_input = 2
 
@@ -23,6 +23,47 @@ contains
         readable = len(problem) == 0
         if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
     end function is_readable
+
+    !> Which verb is an input for, by the groups that only it has? Empty if that cannot be told.
+    function verb_of(file) result(verb)
+        type(namelist_file), intent(in) :: file
+        character(len=:), allocatable :: verb
+
+        verb = ''
+        if (file%line_of_group('slider') > 0 .or. file%line_of_group('drive') > 0) verb = 'run'
+        if (file%line_of_group('sweep') > 0) verb = 'sweep'
+        if (file%line_of_group('fault') > 0) verb = 'fault'
+        if (file%line_of_group('point') > 0) verb = 'point'
+    end function verb_of
+
+    !> Is this an input of the verb? One of another verb is told which one, and nothing else.
+    function is_for(verb, file) result(right)
+        character(len=*), intent(in) :: verb
+        type(namelist_file), intent(inout) :: file
+        logical :: right
+        character(len=:), allocatable :: other
+
+        other = verb_of(file)
+        right = other == verb .or. len(other) == 0
+        if (right) return
+        if (verb /= 'run' .and. other == 'run') then
+            call file%add_fault(0, 'group &' // verb // ' is missing; as it is, this is an input ' &
+                // 'of: stickslip run ' // file%name)
+        else
+            call file%add_fault(file%line_of_group(other), '&' // other // ': unknown group to ' &
+                // verb // '; this is an input of: stickslip ' // other // ' ' // file%name)
+        end if
+        right = .not. has_faults(file)
+    end function is_for
+
+    !> Tells all faults of an input.
+    function has_faults(file) result(any_faults)
+        type(namelist_file), intent(in) :: file
+        logical :: any_faults
+
+        any_faults = size(file%faults) > 0
+        if (any_faults) write (error_unit, '(a)', advance='no') file%describe_faults()
+    end function has_faults
 
     !> Makes the directory of the output, or says that it cannot be written to.
     function directory_is_ready(name) result(ready)

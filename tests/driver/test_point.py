@@ -198,7 +198,7 @@ class GoodInput(Point):
     def test_check_counts_the_increments_and_runs_nothing(self):
         result = self.run_text(namelist({'cycles': '2'}), verb='check')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
-        self.assertEqual(result.stdout, 'case.nml: valid, 202 increments\n')
+        self.assertEqual(result.stdout, 'case.nml: valid, 202 increments, for stickslip point\n')
         self.assertFalse((self.folder / 'case_out').exists())
 
     def test_shipped_inputs_run_to_their_ends(self):
@@ -258,6 +258,7 @@ class BadInput(Point):
         self.assertEqual(result.returncode, 2)
         self.assertIn('&point: unknown group', result.stderr)
         self.assertIn('stickslip point case.nml', result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1)
 
     def test_values_out_of_range_and_of_the_wrong_type(self):
         self.refused(namelist({'ndir': '4', 'cycles': '0', 'tangent': '3', 'control_n': "'force'",

@@ -176,8 +176,23 @@ class GoodInput(Program):
     def test_check_says_that_good_input_is_valid_and_runs_nothing(self):
         result = self.run_text(namelist(), verb='check')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
-        self.assertIn('valid', result.stdout)
+        self.assertEqual(result.stdout, 'case.nml: valid, 100 steps, for stickslip run\n')
         self.assertEqual(os.listdir(self.folder), ['case.nml'])
+
+    def test_an_input_may_come_from_a_pipe(self):
+        # it can be read once only
+        for text in (namelist(), (INPUTS / 'point_mixed.nml').read_text(), (INPUTS / 'sweep_map.nml').read_text()):
+            result = self.run_program('check', '/dev/stdin', input=text)
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertIn('valid', result.stdout)
+        result = self.run_program('run', '/dev/stdin', '--no-plot', '--output', 'out', input=namelist())
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+
+    def test_a_byte_order_mark_and_utf_16_do_not_matter(self):
+        for code in ('utf-8', 'utf-16-le', 'utf-16-be'):
+            (self.folder / 'case.nml').write_bytes(('\ufeff! \u00b5m\r\n' + namelist()).encode(code))
+            result = self.run_program('check', 'case.nml')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
 
     def test_help_and_version_answer_on_standard_output(self):
         for arguments in (['--help'], ['run', '--help']):
@@ -357,6 +372,36 @@ class BadInput(Program):
         self.refused(namelist() + 'stray words\n&output interval 3 /\n', ":24: text outside any group",
                      ":25: &output interval: expected '='")
         self.refused(namelist().rstrip('\n/'), "group &time is not ended by '/'")
+
+    def test_text_that_other_readers_take_silently_or_in_another_way(self):
+        # each is one fault, in its line, with its reason
+        for old, new, said in (
+                ("'subloading'", "'subloading", ":2: &friction law: the text 'subloading is not ended by a quote"),
+                ('mass = 1e-3', 'mass = 1e-400', ':12: &slider mass = 1e-400: is smaller than any number here but 0'),
+                ('velocity = 1', 'velocity(1:2) = 1, 2, 3', ':18: &drive velocity: has 3 values for the 2 places'),
+                ('velocity = 1', 'velocity(1:3:2) = 1, 2', ':18: &drive velocity: has gaps between its subscripts'),
+                ('velocity = 1', 'velocity = 1,, 2', ':18: &drive velocity: a value is missing before a comma'),
+                ('velocity = 1\n/', 'velocity = 1\n/ done', ":19: text after the '/' that ends &drive: 'done'"),
+                ('mass = ', 'area(2) = 1 mass = ', ':12: &slider area'),
+                ('&drive\n', '&\n' * 200 + '&drive\n', ":17: text outside any group: '&'")):
+            result = self.run_text(namelist().replace(old, new), verb='check')
+            self.assertEqual((result.returncode, len(result.stderr.splitlines())), (2, 1), result.stderr)
+            self.assertIn('case.nml' + said, result.stderr)
+
+    def test_subscripts_with_strides_and_long_lists_are_read(self):
+        places = namelist({('drive', 'velocity(1:3:2)'): '1, 3', ('drive', 'velocity(2)'): '2', ('drive', 'duration'): '3*0.03'},
+                          without=[('drive', 'velocity')])
+        self.run_text(places, '--no-plot', '--output', 'a')
+        self.run_text(namelist({('drive', 'velocity'): '1, 2, 3', ('drive', 'duration'): '3*0.03'}), '--no-plot', '--output', 'b')
+        self.assertEqual(self.rows('a/case.csv'), self.rows('b/case.csv'))
+        long = namelist({('drive', 'velocity'): '8000*1', ('drive', 'duration'): ', '.join(['1'] * 8000)})
+        self.assertEqual(self.run_text(long, verb='check').returncode, 0)
+
+    def test_unknown_names_come_with_what_was_meant(self):
+        self.refused(namelist({('slider', 'stifness'): '1', ('slider', 'velocity'): '1', ('ouptut', 'interval'): '1'}),
+                     "&slider stifness: unknown key; did you mean 'stiffness'?",
+                     '&slider velocity: unknown key; &drive has a key of that name',
+                     "&ouptut: unknown group; did you mean '&output'?")
 
     def test_every_fault_is_listed_not_only_the_first(self):
         result = self.run_text(namelist({('slider', 'mass'): '-1', ('slider', 'x'): '1',

@@ -117,7 +117,7 @@ class Table(Sweep):
     def test_check_counts_the_combinations_and_runs_nothing(self):
         result = self.run_text(namelist(TWO_KEYS), verb='check')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
-        self.assertEqual(result.stdout, 'case.nml: valid, 12 combinations\n')
+        self.assertEqual(result.stdout, 'case.nml: valid, 12 combinations, for stickslip sweep\n')
         self.assertEqual(os.listdir(self.folder), ['case.nml'])
 
     def test_quiet_says_nothing(self):

@@ -1,0 +1,58 @@
+!> The verb check: reads and validates an input of any verb, and runs nothing.
+module check
+    use, intrinsic :: iso_fortran_env, only : output_unit
+    use field_file, only : netcdf_available
+    use namelist_input, only : namelist_file
+    use point_reader, only : read_point_settings
+    use point_settings, only : point_run
+    use recorder, only : most_in_csv
+    use run_reader, only : read_settings
+    use run_settings, only : settings
+    use sweep_reader, only : read_sweep
+    use sweep_settings, only : sweep_plan
+    use verb_common, only : exit_bad_input, exit_done, has_faults, is_readable, verb_of
+    implicit none
+    private
+
+    public :: check_input
+
+contains
+
+    !> Says what is wrong, all of it, or which verb the input is for. It is read once: it may come
+    !> from a pipe.
+    subroutine check_input(input, exit_status)
+        character(len=*), intent(in) :: input
+        integer, intent(out) :: exit_status
+        type(namelist_file) :: file
+        type(point_run) :: path
+        type(sweep_plan) :: plan
+        type(settings) :: run
+        character(len=:), allocatable :: verb
+        character(len=60) :: extent
+
+        exit_status = exit_bad_input
+        if (.not. is_readable(input, file)) return
+        verb = verb_of(file)
+        select case (verb)
+        case ('point')
+            call read_point_settings(file, path)
+            if (has_faults(file)) return
+            write (extent, '(i0, a)') nint(path%loading%increments()), ' increments'
+        case ('sweep')
+            call read_sweep(file, plan)
+            if (has_faults(file)) return
+            write (extent, '(i0, a)') size(plan%runs), ' combinations'
+        case default
+            call read_settings(file, run)
+            if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
+                .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
+                // 'blocks needs NetCDF, which this program was built without')
+            if (has_faults(file)) return
+            extent = 'adaptive steps'
+            if (.not. run%adaptive) write (extent, '(i0, a)') run%n_steps, ' steps'
+        end select
+        write (output_unit, '(5a)') input, ': valid, ', trim(extent), ', for stickslip ', verb
+        exit_status = exit_done
+    end subroutine check_input
+
+end module check
