@@ -50,6 +50,7 @@ contains
 
     module procedure friction_update_frame
         real(wp) :: axes(3, 3), state(statev_size), contact_traction(3), contact_tangent(3, 3)
+        real(wp) :: vector(3), matrix(3, 3)
         type(contact_motion) :: motion
         integer :: n
 
@@ -71,27 +72,32 @@ contains
             call turn_to(axis, axes, status)
             if (status < 0) return
         end if
-        associate (basis => axes(1:n, 1:n), u => state(statev_u_n:statev_u_n + n - 1))
-            motion%du(3) = 0.0_wp
-            motion%du(1:n) = matmul(du, basis)
-            motion%dt = dtime
-            motion%pressure_given = .false.
-            motion%pressure = 0.0_wp
-            state = statev(1:statev_size)
-            u = matmul(u, basis)
-            call advance(motion, array_sizes(1, n, size(props), statev_size), props, state, &
-                contact_traction, contact_tangent, status)
-            if (status < 0) return
-            u = matmul(basis, u)
-            statev(1:statev_size) = state
-            traction = matmul(basis, contact_traction(1:n))
-            tangent = matmul(basis, matmul(contact_tangent(1:n, 1:n), transpose(basis)))
-        end associate
+        ! In the plane the third axis is zero, and so is all that it takes part in: products of a
+        ! fixed shape need no run-time library.
+        vector = 0.0_wp
+        vector(1:n) = du
+        motion%du = matmul(vector, axes)
+        motion%dt = dtime
+        motion%pressure_given = .false.
+        motion%pressure = 0.0_wp
+        state = statev(1:statev_size)
+        vector = matmul(state(statev_u_n:statev_u_n + 2), axes)
+        state(statev_u_n:statev_u_n + n - 1) = vector(1:n)
+        call advance(motion, array_sizes(1, n, size(props), statev_size), props, state, &
+            contact_traction, contact_tangent, status)
+        if (status < 0) return
+        vector = matmul(axes, state(statev_u_n:statev_u_n + 2))
+        state(statev_u_n:statev_u_n + n - 1) = vector(1:n)
+        statev(1:statev_size) = state
+        vector = matmul(axes, contact_traction)
+        traction = vector(1:n)
+        matrix = matmul(axes, matmul(contact_tangent, transpose(axes)))
+        tangent = matrix(1:n, 1:n)
     end procedure friction_update_frame
 
     !> Turns the axes to the one that a caller may have given.
     pure subroutine turn_to(axis, axes, status)
-        real(wp), intent(in), optional :: axis(:)
+        real(wp), intent(in), contiguous, optional :: axis(:)
         real(wp), intent(inout) :: axes(3, 3)   !! as columns, the first is the normal
         integer, intent(out) :: status          !! ok, bad size, or bad axis
 

@@ -11,7 +11,7 @@ contains
 
     !> Is a normal of unit length? One in single precision still passes.
     pure function is_unit_vector(normal) result(unit)
-        real(wp), intent(in) :: normal(:)   !! finite [-]
+        real(wp), intent(in), contiguous :: normal(:)   !! finite [-]
         logical :: unit
         real(wp), parameter :: unit_tolerance = 1.0e-6_wp   !! of the square of its length
 
@@ -22,7 +22,7 @@ contains
     !> Without a division by a small number for every normal (Duff et al., J. Comput. Graph. Tech.
     !> 6(1), 2017).
     pure function contact_axes(normal) result(axes)
-        real(wp), intent(in) :: normal(:)   !! size 2 or 3
+        real(wp), intent(in), contiguous :: normal(:)   !! size 2 or 3
         real(wp) :: axes(3, 3)
         real(wp) :: n(3), sign_z, a, b
 
@@ -51,7 +51,8 @@ contains
 
         status = friction_bad_axis
         old = axes(:, 2:3)
-        part = matmul(axis, old)
+        part(1) = dot_product(axis, old(:, 1))
+        part(2) = dot_product(axis, old(:, 2))
         if (.not. norm2(part) > least * norm2(axis)) return
         part = part / norm2(part)
         axes(:, 2) = part(1) * old(:, 1) + part(2) * old(:, 2)

@@ -7,6 +7,7 @@
 submodule(friction_mod) friction_batch
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_intptr_t, c_loc
     use friction_law_choice, only : prop_law, prop_scheme, prop_tau_max
+    use friction_threads, only : worth_threads
     implicit none
 
     integer, parameter :: lanes = 128         !! points of the kernel's block
@@ -79,7 +80,7 @@ contains
         ! Blocks begin where a cache line begins, but for the first.
         head = modulo(-transfer(c_loc(tangent), 0_c_intptr_t) / 8, int(line, c_intptr_t))
         last_block = (sizes%points - head + lanes - 1) / lanes
-        if (sizes%points < few) then   ! to call the threads would take longer
+        if (.not. worth_threads(sizes%points, few)) then
             do block = 0, last_block
                 call update_block(block)
             end do
@@ -241,17 +242,25 @@ contains
         real(wp), intent(inout) :: traction(this%points, this%ndir)
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(out) :: status
-        real(wp) :: statev_(statev_size), traction_(this%ndir), tangent_(this%ndir, this%ndir)
+        real(wp) :: du_(3), statev_(statev_size), traction_(3), tangent_(9)   ! the sizes in space
+        integer :: j, k
 
         status = friction_bad_size
         if (this%nstatv < statev_size) return
+        do j = 1, this%ndir
+            du_(j) = du(i, j)
+        end do
         statev_ = statev(i, :statev_size)
-        call update_arrays(array_sizes(1, this%ndir, this%nprops, statev_size), du(i, :), &
-            this%dtime, props, statev_, traction_, tangent_, status)
+        call update_arrays(array_sizes(1, this%ndir, this%nprops, statev_size), du_, this%dtime, &
+            props, statev_, traction_, tangent_, status)
         if (status < 0) return
         statev(i, :statev_size) = statev_
-        traction(i, :) = traction_
-        tangent(i, :, :) = tangent_
+        do k = 1, this%ndir
+            traction(i, k) = traction_(k)
+            do j = 1, this%ndir
+                tangent(i, j, k) = tangent_((k - 1) * this%ndir + j)
+            end do
+        end do
     end subroutine update_point_of
 
 end submodule friction_batch

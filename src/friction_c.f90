@@ -68,8 +68,8 @@ contains
                                                      !! [F/L^3]
         type(c_ptr), value, intent(in) :: dtau_dp      !! ndir numbers, out [-]
         integer(c_int) :: status
-        real(c_double), pointer :: du_(:), props_(:), statev_(:), tau_(:), dtau_ddu_(:, :), &
-            dtau_dp_(:)
+        real(c_double), pointer, contiguous :: du_(:), props_(:), statev_(:), tau_(:), &
+            dtau_ddu_(:, :), dtau_dp_(:)
 
         status = friction_bad_size
         if (min(ndir, nprops, nstatv) < 0) return
@@ -98,7 +98,7 @@ contains
         type(c_ptr), value, intent(in) :: statev       !! nstatv numbers
         type(c_ptr), value, intent(in) :: rates        !! statev_size numbers, out
         integer(c_int) :: status
-        real(c_double), pointer :: velocity_(:), props_(:), statev_(:), rates_(:)
+        real(c_double), pointer, contiguous :: velocity_(:), props_(:), statev_(:), rates_(:)
 
         status = friction_bad_size
         if (min(ndir, nprops, nstatv) < 0) return

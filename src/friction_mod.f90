@@ -105,28 +105,31 @@ module friction_mod
         pure module subroutine friction_update_frame(du, normal, dtime, props, statev, traction, &
             tangent, status, axis)
             implicit none
-            real(wp), intent(in) :: du(:)   !! increment of relative displacement, slave seen from
-                                            !! master; size 2 or 3, finite [L]
-            real(wp), intent(in) :: normal(:)   !! unit normal from master to slave; size of du [-]
+            real(wp), intent(in), contiguous :: du(:)   !! increment of relative displacement, slave
+                                                        !! seen from master; size 2 or 3, finite [L]
+            real(wp), intent(in), contiguous :: normal(:)   !! unit normal from master to slave;
+                                                            !! size of du [-]
             real(wp), intent(in) :: dtime             !! increment of time, >= 0 [T]
-            real(wp), intent(in) :: props(:)          !! material constants, as in `friction_update`
-            real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
-                                                   !! zero = virgin
-            real(wp), intent(inout) :: traction(:)   !! T at the end of the increment; size of du
-                                                     !! [F/L^2]
-            real(wp), intent(inout) :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric; size of du
-                                                       !! squared [F/L^3]
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
+            real(wp), intent(inout), contiguous :: statev(:)   !! state, start in, end out; size 8
+                                                               !! or more; all zero = virgin
+            real(wp), intent(inout), contiguous :: traction(:)   !! T at the end of the increment;
+                                                                 !! size of du [F/L^2]
+            real(wp), intent(inout), contiguous :: tangent(:, :)   !! dT_i/d(du_j), unsymmetric;
+                                                                   !! size of du squared [F/L^3]
             integer, intent(out) :: status            !! a named code; also `friction_bad_normal`,
                                                       !! `friction_bad_axis`
-            real(wp), intent(in), optional :: axis(:)   !! tangential axis 1, of any length; size
-                                                        !! of du; isotropic friction does not need
-                                                        !! it
+            real(wp), intent(in), contiguous, optional :: axis(:)   !! tangential axis 1, of any
+                                                                    !! length; size of du; isotropic
+                                                                    !! friction does not need it
         end subroutine friction_update_frame
 
         !> Do these constants tell one tangential axis from another?
         pure module function friction_is_orthotropic(props) result(orthotropic)
             implicit none
-            real(wp), intent(in) :: props(:)   !! material constants, as in `friction_update`
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
             logical :: orthotropic             !! false also for constants that are refused
         end function friction_is_orthotropic
 
@@ -137,19 +140,21 @@ module friction_mod
         pure module subroutine friction_tangential(du, pressure, dtime, props, statev, tau, &
             dtau_ddu, dtau_dp, status)
             implicit none
-            real(wp), intent(in) :: du(:)   !! increment of tangential displacement; size 1 or 2,
-                                            !! finite [L]
+            real(wp), intent(in), contiguous :: du(:)   !! increment of tangential displacement;
+                                                        !! size 1 or 2, finite [L]
             real(wp), intent(in) :: pressure   !! at the end of the increment; <= 0 is an open
                                                !! contact [F/L^2]
             real(wp), intent(in) :: dtime           !! increment of time, >= 0 [T]
-            real(wp), intent(in) :: props(:)        !! material constants, as in `friction_update`
-            real(wp), intent(inout) :: statev(:)   !! state, start in, end out; size 8 or more; all
-                                                   !! zero = virgin
-            real(wp), intent(inout) :: tau(:)   !! tangential traction, sign of the slip; size of du
-                                                !! [F/L^2]
-            real(wp), intent(inout) :: dtau_ddu(:, :)   !! d(tau_i)/d(du_j); size of du squared
-                                                        !! [F/L^3]
-            real(wp), intent(inout) :: dtau_dp(:)      !! d(tau)/d(pressure); size of du [-]
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
+            real(wp), intent(inout), contiguous :: statev(:)   !! state, start in, end out; size 8
+                                                               !! or more; all zero = virgin
+            real(wp), intent(inout), contiguous :: tau(:)   !! tangential traction, sign of the
+                                                            !! slip; size of du [F/L^2]
+            real(wp), intent(inout), contiguous :: dtau_ddu(:, :)   !! d(tau_i)/d(du_j); size of du
+                                                                    !! squared [F/L^3]
+            real(wp), intent(inout), contiguous :: dtau_dp(:)   !! d(tau)/d(pressure); size of du
+                                                                !! [-]
             integer, intent(out) :: status   !! a named code; `friction_message` gives its text
         end subroutine friction_tangential
 
@@ -158,13 +163,15 @@ module friction_mod
         !> zero.
         pure module subroutine friction_rates(velocity, props, statev, rates, status)
             implicit none
-            real(wp), intent(in) :: velocity(:)   !! relative: normal, tangential 1[, 2]; size 2 or
-                                                  !! 3, finite [L/T]
-            real(wp), intent(in) :: props(:)      !! material constants, as in `friction_update`
-            real(wp), intent(in) :: statev(:)     !! state; size 8 or more; all zero = virgin
-            real(wp), intent(inout) :: rates(:)   !! rates of statev(2) to statev(8), per unit of
-                                                  !! time; rates(1) = 0; size 8 or more, of which 8
-                                                  !! are set
+            real(wp), intent(in), contiguous :: velocity(:)   !! relative: normal, tangential 1[,
+                                                              !! 2]; size 2 or 3, finite [L/T]
+            real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
+                                                           !! `friction_update`
+            real(wp), intent(in), contiguous :: statev(:)   !! state; size 8 or more; all zero =
+                                                            !! virgin
+            real(wp), intent(inout), contiguous :: rates(:)   !! rates of statev(2) to statev(8),
+                                                              !! per unit of time; rates(1) = 0;
+                                                              !! size 8 or more, of which 8 are set
             integer, intent(out) :: status        !! a named code; `friction_no_rate` where slip
                                                   !! starts with a jump
         end subroutine friction_rates

@@ -1,6 +1,7 @@
 !> Many contact points, each point's numbers side by side (public name and arguments: module
 !> friction_mod). Blocks of points are transposed, in cache, around the batch routine.
 submodule(friction_mod:friction_batch) friction_points
+    use friction_threads, only : worth_threads
     implicit none
 
     !> From one component to the next in the transposed block: a power of two would crowd into few
@@ -52,7 +53,7 @@ contains
             0.0_wp)
         call prepare_kernel(this, props)
         last_block = (sizes%points + lanes - 1) / lanes
-        if (sizes%points < few) then   ! to call the threads would take longer
+        if (.not. worth_threads(sizes%points, few)) then
             do number = 1, last_block
                 call update_block(number)
             end do

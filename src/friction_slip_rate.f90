@@ -10,6 +10,7 @@ submodule(friction_mod) friction_slip_rate
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
     use friction_rate_state_law, only : ageing, rate_state_law, read_rate_state_law, slipping
+    use friction_threads, only : worth_threads
     implicit none
 
     integer, parameter :: lanes = 128         !! points of the kernel's block
@@ -72,7 +73,7 @@ contains
             return
         end if
         vectors = usual(damping)
-        if (n < few) then   ! to call the threads would take longer
+        if (.not. worth_threads(n, few)) then
             do first = 1, n, lanes
                 call rates_of_block(first)
             end do

@@ -52,13 +52,24 @@ contains
 
     !> What a status code says, in one line.
     pure function friction_message(status) result(text)
-        integer, intent(in) :: status           !! a code returned by this library
-        character(len=:), allocatable :: text   !! its meaning; says so if the code is unknown
+        integer, intent(in) :: status                  !! a code returned by this library
+        character(len=text_length(status)) :: text   !! its meaning; says so if the code is unknown
+
+        text = messages(message_place(status))
+    end function friction_message
+
+    !> Its length without the end for C.
+    pure function text_length(status) result(length)
+        integer, intent(in) :: status   !! a code returned by this library
+        integer :: length               !! characters
         integer :: place
 
         place = message_place(status)
-        text = messages(place)(:index(messages(place), c_null_char) - 1)
-    end function friction_message
+        length = 0
+        do while (messages(place)(length + 1:length + 1) /= c_null_char)
+            length = length + 1
+        end do
+    end function text_length
 
     !> Where the text of a code stands in `messages`.
     pure function message_place(status) result(place)

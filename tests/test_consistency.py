@@ -29,6 +29,14 @@ class Consistency(unittest.TestCase):
              re.findall(r'FRICTION_(\w+) = (-?\d+)', (ROOT / 'include/friction.h').read_text())}
         self.assertGreater(len(fortran), 9)
         self.assertEqual(fortran, c)
+        interface = (ROOT / 'include/friction_interface.f90').read_text()
+        self.assertEqual(fortran, dict(re.findall(r'public :: friction_(\w+) = (-?\d+)', interface)))
+
+    def test_the_fortran_interface_declares_the_functions_of_the_header(self):
+        header = re.sub(r'/\*.*?\*/', '', (ROOT / 'include/friction.h').read_text(), flags=re.DOTALL)
+        interface = (ROOT / 'include/friction_interface.f90').read_text()
+        self.assertEqual(set(re.findall(r'(friction_\w+)\s*\(', header)),
+                         set(re.findall(r"bind\(C, name='(\w+)'\)", interface)))
 
 
 if __name__ == '__main__':

@@ -57,23 +57,34 @@ class Installed(unittest.TestCase):
         self.call(os.environ['CMAKE'], '--build', build)
         return self.last_line(self.call(build / 'slide'))
 
-    def build_with_pkg_config(self, compiler, source):
+    def pkg_config(self, *query):
         if shutil.which('pkg-config') is None:
             self.skipTest('pkg-config is not installed')
-        flags = self.call('pkg-config', '--cflags', '--libs', 'stickslip',
-                          env={**os.environ, 'PKG_CONFIG_PATH': str(self.libraries / 'pkgconfig')})
-        program = self.folder / f'slide_{source.suffix}'
-        self.call(f'{compiler} "{source}" {flags.strip()} -o "{program}"', shell=True)
+        return self.call('pkg-config', *query, env={**os.environ, 'PKG_CONFIG_PATH': str(self.libraries / 'pkgconfig')}).strip()
+
+    def build(self, name, compiler, source, flags):
+        program = self.folder / name
+        # a module of this compiler, should it make one
+        self.call(f'{compiler} {source} {flags} -o "{program}"', shell=True, cwd=self.folder)
         return self.last_line(self.call(program, env={**os.environ, 'LD_LIBRARY_PATH': str(self.libraries)}))
 
     def test_all_roads_lead_to_the_same_numbers(self):
         lines = [self.build_with_cmake('c'), self.build_with_cmake('fortran')]
         self.assertEqual(lines[0], lines[1])
 
-    def test_pkg_config_tells_c_and_fortran_how_to_link(self):
-        lines = [self.build_with_pkg_config('cc', EXAMPLES / 'c/slide.c'),
-                 self.build_with_pkg_config(FORTRAN, EXAMPLES / 'fortran/slide.f90')]
-        self.assertEqual(lines[0], lines[1])
+    def test_pkg_config_tells_c_and_fortran_how_to_link_shared_and_static(self):
+        c, modules, any_compiler = (f'"{EXAMPLES / name}"' for name in
+                                    ('c/slide.c', 'fortran/slide.f90', 'fortran/slide_any_compiler.f90'))
+        any_compiler = self.pkg_config('--variable=interface', 'stickslip') + ' ' + any_compiler
+        shared = self.pkg_config('--cflags', '--libs', 'stickslip')
+        static = '-static ' + self.pkg_config('--static', '--cflags', '--libs', 'stickslip')
+        lines = [self.build('c_shared', 'cc', c, shared), self.build('c_static', 'cc', c, static),
+                 self.build('fortran_shared', FORTRAN, any_compiler, shared),
+                 self.build('fortran_static', FORTRAN, any_compiler, static),
+                 self.build('modules', FORTRAN, modules, self.pkg_config('--cflags', '--libs', 'stickslip-fortran')),
+                 self.build('modules_static', FORTRAN, modules,
+                            '-static ' + self.pkg_config('--static', '--cflags', '--libs', 'stickslip-fortran'))]
+        self.assertEqual(lines, lines[:1] * len(lines))
 
     def test_python_draws_its_hysteresis_loop(self):
         try:
@@ -88,7 +99,8 @@ class Installed(unittest.TestCase):
 
     def test_everything_a_host_needs_is_installed(self):
         for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'friction.h', 'friction_mod.mod',
-                     'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90', 'stickslip.pc'):
+                     'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90', 'stickslip.pc', 'stickslip-fortran.pc',
+                     'friction_interface.f90'):
             self.assertEqual(len(list(self.prefix.rglob(name))), 1, name)
 
     def test_the_single_files_for_abaqus_compile_alone(self):

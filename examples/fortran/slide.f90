@@ -1,6 +1,9 @@
 !> Presses a contact point, slides it forth and back, and prints the friction.
 !>
-!>     gfortran slide.f90 $(pkg-config --cflags --libs stickslip) -o slide
+!>     gfortran slide.f90 $(pkg-config --cflags --libs stickslip-fortran) -o slide
+!>
+!> With the modules of the library, which only the compiler that built it can read. For another
+!> compiler, and for the shared library, see slide_any_compiler.f90.
 program slide
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_message, friction_update, friction_version

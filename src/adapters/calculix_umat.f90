@@ -11,8 +11,9 @@
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use, intrinsic :: iso_fortran_env, only : output_unit
-    use friction_host, only : cut_factor, error_text
+    use friction_host, only : append, append_number, cut_factor, error_length, error_text, &
+        used_length
+    use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
     use friction_layer, only : layer_update
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
@@ -46,12 +47,29 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     if (nstatv >= statev_size) call layer_update(ndi, nshr, props, increment, dt, statev, stress, &
         ddsdde, elastic, dissipated, status)
     if (status < 0 .and. status /= friction_no_convergence) then
-        write (output_unit, '(2a, 2(a, i0))') ' *ERROR in umat: ', &
-            trim(error_text('UMAT', status)), ', element ', noel, ', point ', npt
-        flush (output_unit)
-        stop 201
+        call stop_with_cause(error_text('UMAT', status))
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
     if (status < 0) return
     ddsdde(5:6, 3) = 0.0_wp
+
+contains
+
+    !> As CalculiX ends for errors in an input deck.
+    subroutine stop_with_cause(cause)
+        character(len=*), intent(in) :: cause
+        integer, parameter :: bad_input = 201
+        character(len=error_length) :: text
+        integer :: length
+
+        length = 0
+        call append(text, length, ' *ERROR in umat: ')
+        call append(text, length, cause(:used_length(cause)))
+        call append(text, length, ', element ')
+        call append_number(text, length, noel)
+        call append(text, length, ', point ')
+        call append_number(text, length, npt)
+        call end_host(text, to_output, bad_input)
+    end subroutine stop_with_cause
+
 end subroutine umat

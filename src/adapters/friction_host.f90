@@ -7,8 +7,8 @@ module friction_host
     implicit none
     private
 
-    public :: cut_factor, elastic_energy, error_text, forget_elastic, host_tangential, &
-        host_update, interface_update, rotate_tangential
+    public :: append, append_number, cut_factor, elastic_energy, error_text, forget_elastic, &
+        host_tangential, host_update, interface_update, rotate_tangential, used_length
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
@@ -174,9 +174,58 @@ contains
         character(len=*), intent(in) :: adapter    !! name of the adapter
         integer, intent(in) :: status              !! of the friction routine
         character(len=error_length) :: text
+        integer :: length
 
-        write (text, '(3a, i0, 2a)') 'stickslip, ', adapter, ', code ', status, ': ', &
-            friction_message(status)
+        length = 0
+        call append(text, length, 'stickslip, ')
+        call append(text, length, adapter)
+        call append(text, length, ', code ')
+        call append_number(text, length, status)
+        call append(text, length, ': ')
+        call append(text, length, friction_message(status))
     end function error_text
+
+    !> Writes behind the first `length` characters and blanks all that follows. Fortran's own ways
+    !> to put texts together need a run-time library that a host may not have.
+    pure subroutine append(text, length, part)
+        character(len=error_length), intent(inout) :: text
+        integer, intent(inout) :: length         !! characters written so far
+        character(len=*), intent(in) :: part
+
+        text(length + 1:) = part
+        length = min(length + len(part), len(text))
+    end subroutine append
+
+    !> Characters of a text without trailing blanks.
+    pure function used_length(text) result(length)
+        character(len=*), intent(in) :: text
+        integer :: length
+
+        length = len(text)
+        do while (length > 0)
+            if (iachar(text(length:length)) /= iachar(' ')) exit   ! what is no call of a library
+            length = length - 1
+        end do
+    end function used_length
+
+    !> As `append`, a whole number.
+    pure subroutine append_number(text, length, number)
+        character(len=error_length), intent(inout) :: text
+        integer, intent(inout) :: length
+        integer, intent(in) :: number
+        character(len=20) :: digits
+        integer :: rest, first
+
+        rest = abs(number)
+        first = len(digits) + 1
+        do
+            first = first - 1
+            digits(first:first) = achar(iachar('0') + modulo(rest, 10))
+            rest = rest / 10
+            if (rest == 0) exit
+        end do
+        if (number < 0) call append(text, length, '-')
+        call append(text, length, digits(first:))
+    end subroutine append_number
 
 end module friction_host

@@ -10,8 +10,8 @@
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use, intrinsic :: iso_fortran_env, only : error_unit
     use friction_host, only : error_text, host_update
+    use friction_host_end, only : end_host, to_errors
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, statev_size
     implicit none
@@ -34,10 +34,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     status = friction_bad_size
     if (ntens == 6 .and. nstatv >= statev_size) call host_update(2.0_wp * dstran(places), &
         dtime, props, statev, traction, tangent, status)
-    if (status < 0) then   ! this host has no way to cut the step or to hear of an error
-        write (error_unit, '(a)') trim(error_text('Kratos UMAT', status))
-        error stop
-    end if
+    ! this host has no way to cut the step or to be told of an error
+    if (status < 0) call end_host(error_text('Kratos UMAT', status), to_errors, 1)
     stress = 0.0_wp
     stress(places) = 2.0_wp * traction
     ddsdde = 0.0_wp

@@ -33,7 +33,7 @@ if ! apt source --download-only calculix-ccx; then
     echo "CalculiX is left out: its source package cannot be had here" >&2
     exit 77
 fi
-$as_root env DEBIAN_FRONTEND=noninteractive apt-get -qy install --no-install-recommends \
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=600 install --no-install-recommends \
     bzip2 xz-utils patch libspooles-dev libarpack2-dev liblapack-dev
 
 tar xf calculix-ccx_*.orig.tar.*

@@ -1,0 +1,13 @@
+# stickslip_export_only(TARGET NAME...): a shared object exports these symbols and no others, and needs
+# no libraries but those that it calls. A host that loads it has modules and functions of its own.
+function(stickslip_export_only target)
+    if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
+        return()
+    endif()
+    set(script ${CMAKE_CURRENT_BINARY_DIR}/${target}.symbols)
+    list(JOIN ARGN "; " names)
+    file(CONFIGURE OUTPUT ${script} CONTENT "{ global: @names@; local: *; };\n" @ONLY)
+    target_link_options(${target} PRIVATE
+        LINKER:--as-needed LINKER:--gc-sections LINKER:--version-script=${script})
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${script})
+endfunction()

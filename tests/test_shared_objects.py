@@ -1,0 +1,55 @@
+"""What the shared objects show to the programs that load them: their own entries and no other symbol; and what they need
+themselves: the C library and its mathematics, and OpenMP, but no Fortran run-time library.
+
+LIBRARIES: the files, separated by semicolons; STRICT: ON in a build whose run-time checks need that library.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+HEADER = pathlib.Path(__file__).resolve().parent.parent / 'include/friction.h'
+C_LIBRARIES = {'libc', 'libm', 'libmvec', 'ld-linux-x86-64', 'ld-linux-aarch64'}
+OPENMP = {'libgomp', 'libomp', 'libiomp5'}
+
+
+def output(*command):
+    return subprocess.run(command, text=True, check=True, capture_output=True).stdout
+
+
+def declared_functions():
+    """The names in friction.h, without its comments."""
+    return set(re.findall(r'(friction_\w+)\s*\(', re.sub(r'/\*.*?\*/', '', HEADER.read_text(), flags=re.DOTALL)))
+
+
+def exported(library):
+    return set(line.split()[-1] for line in output('nm', '-D', '--defined-only', library).splitlines())
+
+
+def entries(library):
+    """The symbols that a library is there for."""
+    return declared_functions() if library.name.startswith('libstickslip.so') else {'umat_'}
+
+
+class SharedObjects(unittest.TestCase):
+    libraries = [pathlib.Path(name) for name in os.environ['LIBRARIES'].split(';')]
+
+    def test_each_exports_its_own_entries_and_nothing_else(self):
+        self.assertGreater(len(declared_functions()), 4)
+        for library in self.libraries:
+            with self.subTest(library=library.name):
+                self.assertEqual(exported(library), entries(library))
+
+    @unittest.skipIf(os.environ.get('STRICT') == 'ON', 'run-time checks call the run-time library')
+    def test_none_needs_the_fortran_run_time_library(self):
+        for library in self.libraries:
+            with self.subTest(library=library.name):
+                undefined = output('nm', '-D', '--undefined-only', library).split()
+                self.assertEqual([name for name in undefined if re.match('_gfortran|_Fortran|_F[A-Z]|_Q[MQ]', name)], [])
+                needed = re.findall(r'NEEDED.*\[(.*?)\.so', output('readelf', '-d', library))
+                self.assertEqual(set(needed) - C_LIBRARIES - OPENMP, set())
+
+
+if __name__ == '__main__':
+    unittest.main()
