@@ -5,9 +5,10 @@ module recorder
     use archive_file, only : archive
     use chain_events, only : chain_event
     use field_file, only : netcdf_fields
-    use friction_mod, only : statev_mu, statev_r, statev_slip
+    use friction_mod, only : statev_mu, statev_slip
     use run_observer, only : observer, step_news
-    use run_settings, only : next_row, settings
+    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row
+    use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
     use text_file, only : output_file
@@ -16,10 +17,6 @@ module recorder
 
     public :: csv_recorder
 
-    character(len=*), parameter :: series_header = &
-        'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,R,slip'
-    character(len=*), parameter :: events_header = &
-        'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
     character(len=*), parameter :: chain_events_header = &
         'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended'
     character(len=*), parameter :: fields_header = 'time,block,slip_rate,slip,mu'
@@ -32,11 +29,10 @@ module recorder
         character(len=:), allocatable :: base   !! of the files' names, with the directory
         integer :: n_blocks = 1
         real(dp) :: area = 1.0_dp       !! contact area of a block [L^2]
-        integer :: interval = 1         !! steps between two rows
-        real(dp) :: every = 0.0_dp      !! time between two rows; 0: rows by `interval` [T]
+        type(row_clock) :: clock
         integer :: fields_interval = 0  !! steps between two rows of fields; 0: none
         integer :: rows = 0
-        integer :: rows_due = 0, fields_due = 0   !! steps since the last of them
+        integer :: fields_due = 0       !! steps since the last row of fields
     contains
         procedure :: prepare, open, begin, see, finish, visit
         procedure :: flush_all, failed
@@ -55,8 +51,7 @@ contains
         self%base = base
         self%n_blocks = run%chain%n_blocks
         self%area = run%area
-        self%interval = run%interval
-        self%every = run%every
+        call self%clock%prepare(run)
         self%fields_interval = run%fields
     end subroutine prepare
 
@@ -67,11 +62,11 @@ contains
 
         call self%series%create(self%base // '.csv')
         call self%events%create(self%base // '_events.csv')
-        call self%series%write_line(series_header)
+        call self%series%write_line(series_columns)
         if (self%n_blocks > 1) then
             call self%events%write_line(chain_events_header)
         else
-            call self%events%write_line(events_header)
+            call self%events%write_line(event_columns)
         end if
         if (self%has_long_fields()) then
             call self%netcdf%create(self%fields_name(), self%n_blocks)
@@ -112,12 +107,11 @@ contains
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(step_news), intent(inout) :: news
+        logical :: due
         integer :: i
 
-        if (news%complete) self%rows_due = self%rows_due + 1
-        if (self%rows_due == self%interval .or. news%last &
-            .or. next_row(self%every, old%time) <= new%time) call self%write_state(new)
-        if (self%rows_due == self%interval) self%rows_due = 0
+        call self%clock%tick(old, new, news, due)
+        if (due) call self%write_state(new)
         if (self%fields_interval > 0) then
             self%fields_due = self%fields_due + 1
             if (self%fields_due == self%fields_interval) then
@@ -168,7 +162,7 @@ contains
         events = self%events%bytes
         fields = self%fields%bytes + self%netcdf%rows   ! one of them is 0
         call file%visit(self%rows)
-        call file%visit(self%rows_due)
+        call file%visit(self%clock%steps)
         call file%visit(self%fields_due)
         call file%visit(series)
         call file%visit(events)
@@ -208,25 +202,15 @@ contains
             .or. self%netcdf%failed
     end function failed
 
-    !> One row of the time series. Of several blocks it shows the means.
+    !> One row of the time series.
     subroutine write_state(self, state)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: state
 
-        call self%series%write_line(row([state%time, state%drive, mean(state%x), mean(state%v), &
-            mean(state%a), mean(state%spring), mean(state%friction), &
-            mean(state%statev(:, statev_mu)), mean(state%statev(:, statev_r)), &
-            mean(state%statev(:, statev_slip))]))
+        call self%series%write_line(row(series_row(state)))
         self%rows = self%rows + 1
         if (mod(self%rows, rows_between_flushes) == 0) call self%series%flush_lines()
     end subroutine write_state
-
-    pure function mean(values)
-        real(dp), intent(in) :: values(:)
-        real(dp) :: mean
-
-        mean = sum(values) / size(values)
-    end function mean
 
     !> Rows of the catalogue of a chain.
     subroutine write_chain_events(self, news)
@@ -272,16 +256,12 @@ contains
         call self%fields%flush_lines()
     end subroutine write_fields
 
-    !> One row of the table of events. The first event has no recurrence time: NaN.
+    !> One row of the table of events.
     subroutine write_event(self, event)
         class(csv_recorder), intent(inout) :: self
         type(slip_event), intent(in) :: event
-        character(len=:), allocatable :: recurrence
 
-        recurrence = 'NaN'
-        if (.not. event%first) recurrence = row([event%recurrence])
-        call self%events%write_line(row([event%onset, event%duration, event%force_drop &
-            / self%area, event%slip, event%peak_velocity]) // ',' // recurrence)
+        call self%events%write_line(row(event_row(event, self%area)))
         call self%events%flush_lines()
     end subroutine write_event
 

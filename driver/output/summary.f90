@@ -1,14 +1,43 @@
 !> What a run has come to, in a screen of text.
 module summary
+    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
     implicit none
     private
 
-    public :: print_event_times, print_summary
+    public :: print_event_times, print_summary, summary_row
+
+    character(len=*), parameter, public :: summary_columns = 'steps,time,newton_iterations,' &
+        // 'rejected_steps,snap_back_steps,events,mean_period,mean_stress_drop,peak_velocity,' &
+        // 'drive_work,energy_at_start,kinetic,spring,contact,damped,dissipated,unbalanced'
 
 contains
+
+    !> The summary as numbers; means of nothing are NaN.
+    function summary_row(run, result) result(row)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        real(dp) :: row(17)
+        type(event_totals) :: all
+        real(dp) :: none
+        integer :: i
+
+        do i = 1, size(result%pieces)
+            call add(all, result%pieces(i))
+        end do
+        none = ieee_value(none, ieee_quiet_nan)
+        row(1:9) = [real(result%steps, dp), result%time, real(result%iterations, dp), &
+            real(result%rejected, dp), real(result%snap_backs, dp), real(all%events, dp), none, &
+            none, result%peak_velocity]
+        if (all%recurrences > 0) row(7) = all%period / all%recurrences
+        if (all%events > 0) row(8) = all%force_drop / run%area / all%events
+        associate (e => result%energy)
+            row(10:) = [e%drive_work, e%at_start, e%kinetic, e%spring, e%contact, e%damped, &
+                e%dissipated, e%unbalanced()]
+        end associate
+    end function summary_row
 
     subroutine print_summary(run, result, table)
         type(settings), intent(in) :: run

@@ -1,0 +1,94 @@
+!> Keeps in memory what a run has found: the same rows and columns that the CSV files have.
+module memory_recorder
+    use, intrinsic :: iso_c_binding, only : c_null_char
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use run_observer, only : observer, step_news
+    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row
+    use run_settings, only : settings
+    use slider_system, only : slider_state
+    implicit none
+    private
+
+    public :: memory_table, memory_watch
+
+    !> Rows of numbers, growing.
+    type :: memory_table
+        character(len=:), allocatable :: columns   !! names, with commas between them
+        real(dp), allocatable :: values(:, :)      !! column, row; room for more than there is
+        integer(int64) :: rows = 0
+    contains
+        procedure :: start => start_table
+        procedure :: add
+    end type memory_table
+
+    type, extends(observer) :: memory_watch
+        type(memory_table) :: series, events
+        type(row_clock) :: clock
+        real(dp) :: area = 1.0_dp   !! contact area of a block [L^2]
+    contains
+        procedure :: prepare, begin, see
+    end type memory_watch
+
+contains
+
+    subroutine prepare(self, run)
+        class(memory_watch), intent(inout) :: self
+        type(settings), intent(in) :: run
+
+        self%area = run%area
+        call self%clock%prepare(run)
+        call self%series%start(series_columns)
+        call self%events%start(event_columns)
+    end subroutine prepare
+
+    subroutine begin(self, start, news)
+        class(memory_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: start
+        type(step_news), intent(inout) :: news
+
+        call self%series%add(series_row(start))
+    end subroutine begin
+
+    subroutine see(self, old, new, news)
+        class(memory_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(inout) :: news
+        logical :: due
+        integer :: i
+
+        call self%clock%tick(old, new, news, due)
+        if (due) call self%series%add(series_row(new))
+        do i = 1, size(news%slip_events)
+            call self%events%add(event_row(news%slip_events(i), self%area))
+        end do
+    end subroutine see
+
+    subroutine start_table(self, columns)
+        class(memory_table), intent(inout) :: self
+        character(len=*), intent(in) :: columns   !! names, with commas between them
+        integer, parameter :: first_rows = 256
+        integer :: n, i
+
+        n = 1
+        do i = 1, len(columns)
+            if (columns(i:i) == ',') n = n + 1
+        end do
+        self%columns = columns // c_null_char   ! C reads it too
+        allocate (self%values(n, first_rows))
+    end subroutine start_table
+
+    subroutine add(self, row)
+        class(memory_table), intent(inout) :: self
+        real(dp), intent(in) :: row(:)
+        real(dp), allocatable :: larger(:, :)
+
+        if (self%rows == size(self%values, 2, int64)) then
+            allocate (larger(size(self%values, 1), 2 * self%rows))
+            larger(:, :self%rows) = self%values
+            call move_alloc(larger, self%values)
+        end if
+        self%rows = self%rows + 1
+        self%values(:, self%rows) = row
+    end subroutine add
+
+end module memory_recorder

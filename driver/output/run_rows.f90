@@ -1,0 +1,80 @@
+!> Rows and columns of what a run finds: one definition for the CSV files and for tables in memory.
+module run_rows
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+    use friction_mod, only : statev_mu, statev_r, statev_slip
+    use run_observer, only : step_news
+    use run_settings, only : next_row, settings
+    use slider_system, only : slider_state
+    use slip_events, only : slip_event
+    implicit none
+    private
+
+    public :: event_row, row_clock, series_row
+
+    character(len=*), parameter, public :: series_columns = &
+        'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,R,slip'
+    character(len=*), parameter, public :: event_columns = &
+        'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
+
+    !> Tells when a row of the time series is due.
+    type :: row_clock
+        integer :: interval = 1      !! steps between two rows
+        real(dp) :: every = 0.0_dp   !! time between two rows; 0: rows by `interval` [T]
+        integer :: steps = 0         !! since the last row by `interval`
+    contains
+        procedure :: prepare, tick
+    end type row_clock
+
+contains
+
+    subroutine prepare(self, run)
+        class(row_clock), intent(inout) :: self
+        type(settings), intent(in) :: run
+
+        self%interval = run%interval
+        self%every = run%every
+    end subroutine prepare
+
+    !> After each step.
+    pure subroutine tick(self, old, new, news, due)
+        class(row_clock), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(in) :: news
+        logical, intent(out) :: due
+
+        if (news%complete) self%steps = self%steps + 1
+        due = self%steps == self%interval .or. news%last &
+            .or. next_row(self%every, old%time) <= new%time
+        if (self%steps == self%interval) self%steps = 0
+    end subroutine tick
+
+    !> A row of the time series. Of several blocks it shows the means.
+    pure function series_row(state) result(row)
+        type(slider_state), intent(in) :: state
+        real(dp) :: row(10)
+
+        row = [state%time, state%drive, mean(state%x), mean(state%v), mean(state%a), &
+            mean(state%spring), mean(state%friction), mean(state%statev(:, statev_mu)), &
+            mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip))]
+    end function series_row
+
+    pure function mean(values)
+        real(dp), intent(in) :: values(:)
+        real(dp) :: mean
+
+        mean = sum(values) / size(values)
+    end function mean
+
+    !> A row of the table of events. The first event has no recurrence time: NaN.
+    function event_row(event, area) result(row)
+        type(slip_event), intent(in) :: event
+        real(dp), intent(in) :: area   !! contact area, turns forces into stresses [L^2]
+        real(dp) :: row(6)
+
+        row = [event%onset, event%duration, event%force_drop / area, event%slip, &
+            event%peak_velocity, event%recurrence]
+        if (event%first) row(6) = ieee_value(row(6), ieee_quiet_nan)
+    end function event_row
+
+end module run_rows

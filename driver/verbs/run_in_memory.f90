@@ -1,0 +1,238 @@
+!> The program's slider without files: input as a text, results as tables. C interface:
+!> include/stickslip_program.h.
+module run_in_memory
+    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, &
+        c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : friction_null_pointer
+    use memory_recorder, only : memory_table, memory_watch
+    use namelist_input, only : namelist_file, read_namelist_text
+    use run_observer, only : observer, observer_slot, step_news
+    use run_outcome, only : outcome
+    use run_reader, only : read_settings
+    use run_settings, only : settings
+    use simulation, only : simulate, simulation_run, start_run
+    use slider_system, only : slider_state
+    use summary, only : summary_columns, summary_row
+    use verb_common, only : exit_bad_input, exit_done, exit_failed
+    implicit none
+    private
+
+    public :: c_free, c_report, c_run, c_table
+
+    !> What a run leaves. Texts end with a null character.
+    type :: run_result
+        type(memory_watch) :: found
+        type(memory_table) :: summary
+        character(len=:), allocatable :: faults, failure, warnings
+    end type run_result
+
+    abstract interface
+        !> Of include/stickslip_program.h.
+        function watch_function(part, context) result(stop_now) bind(C)
+            import :: c_double, c_int, c_ptr
+            implicit none
+            real(c_double), value, intent(in) :: part
+            type(c_ptr), value, intent(in) :: context
+            integer(c_int) :: stop_now
+        end function watch_function
+    end interface
+
+    interface
+        !> Of the C library.
+        pure function c_strlen(text) result(length) bind(C, name='strlen')
+            import :: c_ptr, c_size_t
+            implicit none
+            type(c_ptr), value, intent(in) :: text
+            integer(c_size_t) :: length
+        end function c_strlen
+    end interface
+
+    !> Tells the caller how far the run has come, and ends it if the caller wants so.
+    type, extends(observer) :: caller_watch
+        procedure(watch_function), pointer, nopass :: watch => null()
+        type(c_ptr) :: context = c_null_ptr
+        real(dp) :: t_end = 0.0_dp   !! [T]
+    contains
+        procedure :: see => tell_caller
+    end type caller_watch
+
+contains
+
+    subroutine tell_caller(self, old, new, news)
+        class(caller_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(inout) :: news
+        integer, parameter :: steps_between = 4096
+
+        if (.not. associated(self%watch)) return
+        if (mod(news%steps, steps_between) /= 0) return
+        if (self%watch(new%time / self%t_end, self%context) /= 0) call news%stop_run( &
+            'ended by the caller')
+    end subroutine tell_caller
+
+    !> `stickslip_run` of include/stickslip_program.h.
+    function c_run(name, text, watch, context, result) result(status) &
+        bind(C, name='stickslip_run')
+        type(c_ptr), value, intent(in) :: name, text   !! C texts
+        type(c_funptr), value, intent(in) :: watch
+        type(c_ptr), value, intent(in) :: context
+        type(c_ptr), value, intent(in) :: result       !! place of a pointer
+        integer(c_int) :: status
+        type(c_ptr), pointer :: place
+        type(run_result), pointer :: this
+        type(caller_watch) :: caller
+        procedure(watch_function), pointer :: watch_
+
+        status = friction_null_pointer
+        if (.not. c_associated(result)) return
+        call c_f_pointer(result, place)
+        place = c_null_ptr
+        if (.not. (c_associated(name) .and. c_associated(text))) return
+        allocate (this)
+        place = c_loc(this)
+        if (c_associated(watch)) then
+            call c_f_procpointer(watch, watch_)
+            caller%watch => watch_
+        end if
+        caller%context = context
+        call run_text(fortran_text(name), fortran_text(text), caller, this, status)
+    end function c_run
+
+    !> Reads, validates, simulates.
+    subroutine run_text(name, text, caller, this, status)
+        character(len=*), intent(in) :: name, text
+        type(caller_watch), target, intent(inout) :: caller
+        type(run_result), target, intent(inout) :: this
+        integer, intent(out) :: status   !! an exit status of the program
+        type(settings) :: run
+        type(simulation_run) :: live
+        type(observer_slot) :: observers(2)
+        type(outcome) :: result
+
+        ! gfortran (12) keeps the lengths of some functions' results in static memory, and reading
+        ! calls such functions: one thread at a time.
+        !$omp critical (stickslip_reading)
+        call read_text(name, text, run, this%faults)
+        !$omp end critical (stickslip_reading)
+        this%failure = c_null_char
+        this%warnings = c_null_char
+        status = exit_bad_input
+        if (len(this%faults) > 1) return
+
+        call start_run(run, live)
+        call this%found%prepare(run)
+        caller%t_end = run%t_end
+        observers(1)%it => this%found
+        observers(2)%it => caller
+        call simulate(live, observers, result)
+        call this%summary%start(summary_columns)
+        call this%summary%add(summary_row(run, result))
+        status = exit_done
+        if (len(result%failure) == 0) return
+        status = exit_failed
+        this%failure = result%failure // c_null_char
+    end subroutine run_text
+
+    subroutine read_text(name, text, run, faults)
+        character(len=*), intent(in) :: name, text
+        type(settings), intent(out) :: run
+        character(len=:), allocatable, intent(out) :: faults   !! ends with a null character
+        type(namelist_file) :: file
+        character(len=:), allocatable :: problem
+
+        call read_namelist_text(name, text, file, problem)
+        if (len(problem) > 0) then
+            faults = name // ': ' // problem // new_line('a') // c_null_char
+            return
+        end if
+        call read_settings(file, run)
+        faults = c_null_char
+        if (size(file%faults) > 0) faults = file%describe_faults() // c_null_char
+    end subroutine read_text
+
+    !> A C text.
+    function fortran_text(address) result(text)
+        type(c_ptr), intent(in) :: address
+        character(len=c_strlen(address)) :: text
+        character(len=1, kind=c_char), pointer :: letters(:)
+        integer :: i
+
+        call c_f_pointer(address, letters, [len(text)])
+        do i = 1, len(text)
+            text(i:i) = letters(i)
+        end do
+    end function fortran_text
+
+    !> `stickslip_table` of include/stickslip_program.h.
+    function c_table(result, table, rows, columns, names) result(values) &
+        bind(C, name='stickslip_table')
+        type(c_ptr), value, intent(in) :: result, table
+        integer(c_int64_t), intent(out) :: rows
+        integer(c_int), intent(out) :: columns
+        type(c_ptr), intent(out) :: names
+        type(c_ptr) :: values
+        type(run_result), pointer :: this
+
+        values = c_null_ptr
+        names = c_null_ptr
+        rows = 0
+        columns = 0
+        if (.not. (c_associated(result) .and. c_associated(table))) return
+        call c_f_pointer(result, this)
+        select case (fortran_text(table))
+        case ('series')
+            call show(this%found%series, rows, columns, names, values)
+        case ('events')
+            call show(this%found%events, rows, columns, names, values)
+        case ('summary')
+            call show(this%summary, rows, columns, names, values)
+        case default   ! none
+        end select
+    end function c_table
+
+    subroutine show(table, rows, columns, names, values)
+        type(memory_table), target, intent(in) :: table
+        integer(c_int64_t), intent(out) :: rows
+        integer(c_int), intent(out) :: columns
+        type(c_ptr), intent(inout) :: names, values
+
+        rows = table%rows
+        columns = 0
+        if (.not. allocated(table%values)) return   ! nothing was run
+        columns = size(table%values, 1)
+        names = c_loc(table%columns)
+        values = c_loc(table%values)
+    end subroutine show
+
+    !> `stickslip_report` of include/stickslip_program.h.
+    function c_report(result, report) result(text) bind(C, name='stickslip_report')
+        type(c_ptr), value, intent(in) :: result, report
+        type(c_ptr) :: text
+        type(run_result), pointer :: this
+
+        text = c_null_ptr
+        if (.not. (c_associated(result) .and. c_associated(report))) return
+        call c_f_pointer(result, this)
+        select case (fortran_text(report))
+        case ('faults')
+            text = c_loc(this%faults)
+        case ('failure')
+            text = c_loc(this%failure)
+        case ('warnings')
+            text = c_loc(this%warnings)
+        case default   ! none
+        end select
+    end function c_report
+
+    !> `stickslip_free` of include/stickslip_program.h.
+    subroutine c_free(result) bind(C, name='stickslip_free')
+        type(c_ptr), value, intent(in) :: result
+        type(run_result), pointer :: this
+
+        if (.not. c_associated(result)) return
+        call c_f_pointer(result, this)
+        deallocate (this)
+    end subroutine c_free
+
+end module run_in_memory

@@ -1,0 +1,56 @@
+/* stickslip: the program's spring-slider without files, C interface of libstickslip_program.
+ *
+ * A run is a function of its input alone; any number of them may go on at the same time, each in its thread. */
+#ifndef STICKSLIP_PROGRAM_H
+#define STICKSLIP_PROGRAM_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct stickslip_result stickslip_result;
+
+/* Called now and then during a run, in its thread: `part` is how much of it is done, 0 to 1. A value other than 0 ends
+ * the run. */
+typedef int (*stickslip_watch)(double part, void *context);
+
+/* Runs the slider on an input that is in memory.
+ *   name      of the input, for messages; files that it names are looked for beside it
+ *   text      namelists, as `stickslip run` reads them (docs/driver.md)
+ *   watch     see above; or NULL
+ *   context   handed to it
+ *   result    what was found, to be freed by stickslip_free whatever the function's value; NULL after
+ *             STICKSLIP_NO_INPUT
+ * Returns a stickslip_outcome. Snapshots of a chain's blocks (`fields`) and checkpoints are files, and are not written. */
+int stickslip_run(const char *name, const char *text, stickslip_watch watch, void *context, stickslip_result **result);
+
+enum stickslip_outcome {
+    STICKSLIP_DONE = 0,       /* the run reached its end */
+    STICKSLIP_FAILED = 1,     /* it ended before: stickslip_report(result, "failure"); the tables hold what came before */
+    STICKSLIP_BAD_INPUT = 2,  /* nothing was run: stickslip_report(result, "faults") */
+    STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL */
+};
+
+/* One of the tables of a run: "series", "events", "summary" (one row).
+ *   rows      receives the number of rows
+ *   columns   receives the number of columns
+ *   names     receives the names of the columns with commas between them
+ * Returns its numbers, row after row, or NULL where there is no such table. They, and the names, live as long as the
+ * result. */
+const double *stickslip_table(const stickslip_result *result, const char *table, int64_t *rows, int *columns,
+                              const char **names);
+
+/* Text about a run: "faults" of the input, one a line; "failure", why it ended early; "warnings", one a line. Empty where
+ * there is none, NULL where there is no such report. Lives as long as the result. */
+const char *stickslip_report(const stickslip_result *result, const char *report);
+
+/* Gives back the memory of a result; NULL is no fault. */
+void stickslip_free(stickslip_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,81 @@
+"""The program's slider in this process: include/stickslip_program.h by ctypes."""
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ._library import load
+
+_library = load('stickslip_program')
+_watch_type = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p)
+_run = _library.stickslip_run
+_run.argtypes = [ctypes.c_char_p, ctypes.c_char_p, _watch_type, ctypes.c_void_p, ctypes.POINTER(ctypes.c_void_p)]
+_table = _library.stickslip_table
+_table.restype = ctypes.c_void_p
+_table.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_int),
+                   ctypes.POINTER(ctypes.c_char_p)]
+_report = _library.stickslip_report
+_report.restype = ctypes.c_char_p
+_report.argtypes = [ctypes.c_void_p, ctypes.c_char_p]
+_free = _library.stickslip_free
+_free.argtypes = [ctypes.c_void_p]
+
+DONE, FAILED, BAD_INPUT = 0, 1, 2
+
+
+class Table(NamedTuple):
+    """Numbers, a row a line, with the names of the columns."""
+
+    names: list[str]
+    values: np.ndarray   #: (rows, columns)
+
+
+class Output(NamedTuple):
+    """What a run leaves."""
+
+    status: int                #: DONE, FAILED or BAD_INPUT
+    tables: dict[str, Table]   #: by name; none after BAD_INPUT
+    reports: dict[str, str]    #: 'faults', 'failure', 'warnings'; empty texts where there is none
+
+
+TABLES = ('series', 'events', 'summary')
+REPORTS = ('faults', 'failure', 'warnings')
+
+
+def simulate(text: str, name: str = 'input', watch: Callable[[float], object] | None = None) -> Output:
+    """Runs the slider on the text of a namelist. `watch` is told now and then which part of the run is done; what it
+    raises ends the run, and is raised here. Gives the interpreter's lock away."""
+    raised = []
+
+    def told(part: float, _context: int | None) -> int:
+        try:
+            if watch is not None:
+                watch(part)
+        except BaseException as error:   # also KeyboardInterrupt: it has to pass through the library's frames
+            raised.append(error)
+            return 1
+        return 0
+
+    result = ctypes.c_void_p()
+    status = _run(name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result))
+    try:
+        if raised:
+            raise raised[0]
+        tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in TABLES}
+        return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
+    finally:
+        _free(result)
+
+
+def _read(result: ctypes.c_void_p, table: str) -> Table:
+    """A copy of a table: the result's own memory is given back."""
+    rows, columns, names = ctypes.c_int64(), ctypes.c_int(), ctypes.c_char_p()
+    address = _table(result, table.encode(), ctypes.byref(rows), ctypes.byref(columns), ctypes.byref(names))
+    shape = (rows.value, columns.value)
+    if shape[0] == 0:
+        return Table(names.value.decode().split(','), np.empty(shape))
+    numbers = (ctypes.c_double * (shape[0] * shape[1])).from_address(address)
+    return Table(names.value.decode().split(','), np.array(numbers).reshape(shape))

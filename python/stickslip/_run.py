@@ -1,0 +1,98 @@
+"""The program `stickslip run` as a function (docs/python.md)."""
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import warnings as python_warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _namelist, _program
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import pandas
+
+
+class InputError(ValueError):
+    """An input that breaks rules; the text lists every fault with its line, group, key, value and rule."""
+
+
+class RunError(RuntimeError):
+    """A run that ended before its time; `run` holds what was computed before."""
+
+    def __init__(self, why: str, run: Run) -> None:
+        super().__init__(why)
+        self.run = run
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """What a run found: the columns of the program's files (docs/driver.md)."""
+
+    table: pandas.DataFrame            #: time series; row 0 is the initial state
+    events: pandas.DataFrame           #: one row a slip event
+    summary: dict[str, float]          #: counts, means, energies; NaN for means of nothing
+    warnings: list[str]
+
+    def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
+        """Draws the spring force, its slip events and the friction coefficient against time.
+
+        path: where to save the picture, PNG, PDF or SVG by its ending.
+        """
+        from matplotlib.figure import Figure
+        figure = Figure(figsize=(8, 5), layout='constrained')
+        force, coefficient = figure.subplots(2, 1, sharex=True)
+        table = self.table.iloc[::max(1, len(self.table) // 100_000)]
+        force.plot(table['time'], table['spring_force'], lw=1, label='spring')
+        force.plot(table['time'], table['friction_force'], lw=0.6, label='friction')
+        onset = self.events['onset']
+        force.plot(onset, np.interp(onset, self.table['time'], self.table['spring_force']), 'v', ms=5, color='0.2',
+                   label='onset of a slip event')
+        force.set_ylabel('force [F]')
+        force.legend(loc='lower right', fontsize='small')
+        coefficient.plot(table['time'], table['mu'], lw=1)
+        coefficient.set_ylabel('friction coefficient [-]')
+        coefficient.set_xlabel('time [T]')
+        if path is not None:
+            figure.savefig(path)
+        return figure
+
+
+def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
+    """Runs the program's slider in this process, without files.
+
+    input: a namelist (the name of its file, or its text), or a dict of groups, each a dict of keys; the group
+        ``friction`` may be a law: ``{'friction': law, 'slider': {...}, 'drive': {...}, 'time': {...}}``. Keys, units
+        and defaults: docs/driver.md.
+
+    Raises InputError with every fault of the input, RunError where the run fails. Warnings of the program are in
+    `warnings` and are given as Python warnings, too. Several runs may go on at once, each in its thread.
+    """
+    import pandas
+
+    name = 'input'
+    if not isinstance(input, dict) and not _namelist.is_text(input):
+        name = str(input)
+    output = _program.simulate(_namelist.text_of(input), name, lambda _part: None)
+    if output.status == _program.BAD_INPUT:
+        raise InputError(output.reports['faults'].rstrip())
+    frames = {key: pandas.DataFrame(table.values, columns=table.names) for key, table in output.tables.items()}
+    told = output.reports['warnings'].splitlines()
+    result = Run(frames['series'], frames['events'], {key: float(value[0]) for key, value in frames['summary'].items()}, told)
+    for warning in told:
+        python_warnings.warn(warning, stacklevel=2)
+    if output.status == _program.FAILED:
+        raise RunError(f'{name}: the run failed {output.reports["failure"]}', result)
+    return result
+
+
+def spring_force(settings: dict[str, dict[str, Any]]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Time and spring force of a run on groups of keys; None where it fails, or where its constants are not valid
+    together, as candidates of a search may be."""
+    output = _program.simulate(_namelist.written(settings))
+    if output.status != _program.DONE:
+        return None
+    series = output.tables['series']
+    return series.values[:, series.names.index('time')], series.values[:, series.names.index('spring_force')]

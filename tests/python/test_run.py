@@ -1,0 +1,128 @@
+"""stickslip.run: the program in this process, the same numbers as from its files."""
+import concurrent.futures
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import stickslip
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SLIDER = {'mass': 1e-3, 'stiffness': 1.0, 'damping': 0.01, 'area': 1000.0, 'normal_traction': 0.01}
+LAW = stickslip.laws.Subloading(alpha_n=1.0, alpha_t=1.0, mu_s=0.4, mu_k=0.2, kappa=10.0, xi=10.0, m=1000.0)
+INPUT = {'friction': LAW, 'slider': SLIDER, 'drive': {'velocity': 1.0}, 'time': {'t_end': 8.0, 'dt': 1e-3}}
+
+
+class Run(unittest.TestCase):
+    def test_a_dict_is_a_namelist_is_a_file(self):
+        by_dict = stickslip.run(INPUT)
+        text = ("&friction law='subloading' alpha_n=1 alpha_t=1 mu_s=.4 mu_k=.2 kappa=10 xi=10 m=1000 /\n"
+                '&slider mass=1e-3 stiffness=1 damping=.01 area=1000 normal_traction=.01 /\n'
+                '&drive velocity=1 /\n&time t_end=8 dt=1e-3 /\n')
+        by_text = stickslip.run(text)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'slider.nml')
+            path.write_text(text)
+            by_path = stickslip.run(path)
+        for other in (by_text, by_path):
+            np.testing.assert_array_equal(by_dict.table, other.table)
+            np.testing.assert_array_equal(by_dict.events, other.events)
+            self.assertEqual(repr(by_dict.summary), repr(other.summary))
+        self.assertEqual(len(by_dict.table), 8001)
+        self.assertGreater(len(by_dict.events), 1)
+        self.assertEqual(by_dict.summary['events'], len(by_dict.events))
+        self.assertAlmostEqual(by_dict.table['spring_force'].max(), 4.0, delta=0.1)   # mu_s S f_n
+
+    @unittest.skipUnless(os.access(ROOT / 'build/release/driver/stickslip', os.X_OK), 'the program is not built')
+    def test_every_input_gives_the_same_numbers_as_the_program_writes(self):
+        for name in ('stick_slip', 'slow_steady', 'velocity_steps', 'adaptive', 'rate_and_state', 'from_file'):
+            path = ROOT / 'inputs' / f'{name}.nml'
+            with warnings.catch_warnings():
+                warnings.simplefilter('ignore')
+                found = stickslip.run(path)
+            with tempfile.TemporaryDirectory() as folder:
+                subprocess.run([ROOT / 'build/release/driver/stickslip', 'run', path, '--output', folder, '--no-plot',
+                                '--quiet'], check=True, capture_output=True)
+                for ending, table in (('', found.table), ('_events', found.events)):
+                    lines = pathlib.Path(folder, f'{name}{ending}.csv').read_text().splitlines()
+                    self.assertEqual(lines[0], ','.join(table.columns))
+                    written = np.array([line.split(',') for line in lines[1:]], float).reshape(-1, len(table.columns))
+                    np.testing.assert_array_equal(table.to_numpy(), written, err_msg=name)
+
+    def test_faults_are_all_listed_as_by_the_program(self):
+        with self.assertRaises(stickslip.InputError) as caught:
+            stickslip.run({**INPUT, 'slider': {**SLIDER, 'stiffness': -1.0, 'weight': 3}, 'friction': {**LAW.constants(), 'm': 0}})
+        for word in ('stiffness', 'weight', 'm = 0'):
+            self.assertIn(word, str(caught.exception))
+        with self.assertRaises(OSError):
+            stickslip.run('no such file.nml')
+        with self.assertRaises(stickslip.InputError):
+            stickslip.run('&slider mass=1 /\n')
+        with self.assertRaises(TypeError):
+            stickslip.run({'friction': 3})
+
+    def test_what_was_computed_before_a_failure_is_kept(self):
+        unstable = {'friction': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=1000, mu_s=0.4, mu_k=0.2, d_c=0.01),
+                    'slider': {**SLIDER, 'mass': 0.0, 'damping': 0.0, 'stiffness': 100.0, 'area': 1.0,
+                               'normal_traction': 10.0},
+                    'drive': {'velocity': 0.1}, 'time': {'t_end': 1.0, 'dt': 1e-3}}
+        with self.assertRaisesRegex(stickslip.RunError, 'unstable without inertia') as caught:
+            stickslip.run(unstable)
+        self.assertGreater(len(caught.exception.run.table), 100)
+
+    def test_threads_give_what_one_after_another_gives(self):
+        """Different inputs at once, faults and failures among them."""
+        def work(k):
+            settings = {**INPUT, 'drive': {'velocity': 1.0 + k}}
+            if k % 5 == 3:
+                settings['slider'] = {**SLIDER, 'x' * (k + 1): k}
+            try:
+                return stickslip.run(settings).table.to_numpy().tobytes()
+            except stickslip.InputError as error:
+                return str(error)
+        alone = [work(k) for k in range(40)]
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            for _ in range(3):
+                self.assertEqual(list(pool.map(work, range(40))), alone)
+
+    def test_null_pointers_and_unknown_names_are_no_crash(self):
+        import ctypes
+
+        from stickslip import _program
+        result, names, rows, columns = ctypes.c_void_p(), ctypes.c_char_p(), ctypes.c_int64(), ctypes.c_int()
+        nobody = _program._watch_type()
+        self.assertEqual(_program._run(b'x', None, nobody, None, ctypes.byref(result)), -8)
+        self.assertIsNone(result.value)
+        self.assertEqual(_program._run(b'x', b'', nobody, None, None), -8)
+        self.assertEqual(_program._run(b'x', b'', nobody, None, ctypes.byref(result)), _program.BAD_INPUT)
+        for table in (b'series', b'nonsense'):
+            self.assertIsNone(_program._table(result, table, ctypes.byref(rows), ctypes.byref(columns), ctypes.byref(names)))
+            self.assertEqual((rows.value, columns.value), (0, 0))
+        self.assertIsNone(_program._report(result, b'nonsense'))
+        self.assertIn(b'&slider is missing', _program._report(result, b'faults'))
+        _program._free(result)
+        _program._free(None)
+
+    def test_an_interrupt_ends_a_run(self):
+        from stickslip import _namelist, _program
+
+        def interrupt(part):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            _program.simulate(_namelist.written({**_namelist.groups_of(INPUT), 'time': {'t_end': 1e4, 'dt': 1e-3}}),
+                              watch=interrupt)
+
+    def test_a_picture_is_drawn(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'run.png')
+            stickslip.run(INPUT).plot(path)
+            self.assertGreater(path.stat().st_size, 10_000)
+
+
+if __name__ == '__main__':
+    unittest.main()
