@@ -8,6 +8,7 @@ module point_reader
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
     use point_settings, only : point_run
+    use unit_reader, only : read_units
     implicit none
     private
 
@@ -38,6 +39,7 @@ contains
         call file%get_integer(group, 'cycles', run%loading%cycles, at_least(1.0_dp), default=1)
         call read_segments(file, run%loading)
         call read_file(file, run%loading)
+        call read_units(file, run%units)
         call file%refuse_unknown()
         if (size(file%faults) > 0) return
         if (run%loading%increments() > real(huge(1) - 1, dp)) call file%reject(group, 'cycles', &

@@ -10,6 +10,7 @@ module run_reader
     use loading_programme, only : programme
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
+    use unit_reader, only : read_units
     implicit none
     private
 
@@ -47,7 +48,7 @@ contains
         call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
-        if (file%has_group('output')) continue
+        call read_units(file, run%units)
         call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
             default=60.0_dp)
@@ -56,7 +57,8 @@ contains
         run%fingerprint = fingerprint_of(file%listing(), run%drive)
     end subroutine read_settings
 
-    !> A number that is another one for any other input, but for when checkpoints are written.
+    !> A number that is another one for any other input, but for keys of &output that change no
+    !> results.
     pure function fingerprint_of(listing, drive) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
         type(programme), intent(in) :: drive      !! files that they name included
@@ -67,8 +69,11 @@ contains
         start = 1
         do while (start <= len(listing))
             length = index(listing(start:), new_line('a'))
-            if (index(listing(start:), '&output checkpoint') /= 1) call mix( &
-                [(int(iachar(listing(i:i)), int64), i = start, start + length - 1)], number)
+            associate (line => listing(start:start + length - 1))
+                if (index(line, '&output checkpoint') /= 1 .and. .not. (index(line, '&output ') &
+                    == 1 .and. index(line, '_unit') > 0)) call mix([(int(iachar(line(i:i)), &
+                    int64), i = 1, length)], number)
+            end associate
             start = start + length
         end do
         if (.not. allocated(drive%start)) return

@@ -8,7 +8,7 @@ module law_facts
     private
 
     public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
-        kinetic_coefficient, shear_cap, static_coefficient, typical_coefficient
+        internal_variable, kinetic_coefficient, shear_cap, static_coefficient, typical_coefficient
 
 contains
 
@@ -78,6 +78,16 @@ contains
         mu = props(4)
         if (nint(props(1)) == law_rate_state) mu = huge(mu)
     end function static_coefficient
+
+    !> What the law calls its internal variable; R if it has none.
+    pure function internal_variable(props) result(name)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        character(len=5) :: name
+
+        name = 'R'
+        if (nint(props(1)) == law_rate_state) name = 'theta'
+        if (nint(props(1)) == law_slip_weakening) name = 'D'
+    end function internal_variable
 
     !> The shear cap, huge without one.
     pure function shear_cap(props) result(tau_max)

@@ -2,6 +2,7 @@
 module point_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_path, only : path
+    use unit_names, only : units
     implicit none
     private
 
@@ -11,6 +12,7 @@ module point_settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
         type(path) :: loading
         logical :: tangent = .false.        !! the CSV file shows the tangent
+        type(units) :: units                !! that the numbers are in, for pictures
     end type point_run
 
 end module point_settings

@@ -4,6 +4,7 @@ module run_settings
     use chain_settings, only : chain
     use loading_programme, only : programme
     use slider_system, only : initial_values
+    use unit_names, only : units
     implicit none
     private
 
@@ -32,6 +33,7 @@ module run_settings
         real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
         integer :: fields = 0               !! steps between two rows of a chain's fields; 0: none
         integer :: n_steps = 0              !! follows from t_end and dt
+        type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results
     end type settings
 

@@ -37,7 +37,7 @@ contains
 
         self%area = run%area
         call self%clock%prepare(run)
-        call self%series%start(series_columns)
+        call self%series%start(trim(series_columns(run%props)))
         call self%events%start(event_columns)
     end subroutine prepare
 

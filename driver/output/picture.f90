@@ -1,126 +1,115 @@
-!> The picture of a run, drawn by gnuplot from the CSV file; its script stays beside it.
+!> Pictures, drawn by gnuplot. Each has a script of its own (output/pictures/*.gp); beside the data
+!> the program leaves that script with the names, units and numbers of the case before it, so that
+!> it can be changed and run again.
 module picture
-    use platform, only : have_command, run_in_directory, shell_word
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use child_process, only : run_command
+    use number_text, only : short_text
+    use picture_scripts, only : get_script
+    use platform, only : have_command, shell_word
     use text_file, only : output_file
+    use unit_names, only : units
     implicit none
     private
 
-    public :: draw_picture, escaped, finish_picture, put_line_styles, quoted
+    public :: picture_values
+
+    real(dp), parameter :: time_limit = 60.0_dp   !! of gnuplot [s]
+
+    !> What a script is told: assignments, one a line.
+    type :: picture_values
+        private
+        character(len=:), allocatable :: text
+    contains
+        procedure :: begin
+        procedure, private :: set_text, set_number, set_integer
+        generic :: set => set_text, set_number, set_integer
+        procedure :: draw
+    end type picture_values
 
 contains
 
-    !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png with it. `problem` says what went
-    !> wrong.
-    subroutine draw_picture(directory, stem, problem)
+    !> For the picture STEM.png of the data in FILE.
+    subroutine begin(self, stem, file, names)
+        class(picture_values), intent(inout) :: self
+        character(len=*), intent(in) :: stem, file
+        type(units), intent(in) :: names
+
+        self%text = ''
+        call self%set('stem', stem)
+        call self%set('file', file)
+        call self%set('length_unit', trim(names%length))
+        call self%set('force_unit', trim(names%force))
+        call self%set('time_unit', trim(names%time))
+        call self%set('stress_unit', trim(names%stress()))
+    end subroutine begin
+
+    subroutine set_text(self, name, value)
+        class(picture_values), intent(inout) :: self
+        character(len=*), intent(in) :: name, value
+        integer :: i
+
+        self%text = self%text // name // " = '"
+        do i = 1, len(value)
+            self%text = self%text // value(i:i)
+            if (value(i:i) == "'") self%text = self%text // "'"
+        end do
+        self%text = self%text // "'" // new_line('a')
+    end subroutine set_text
+
+    subroutine set_number(self, name, value)
+        class(picture_values), intent(inout) :: self
+        character(len=*), intent(in) :: name
+        real(dp), intent(in) :: value
+
+        self%text = self%text // name // ' = 1.0 * ' // short_text(value) // new_line('a')
+    end subroutine set_number
+
+    subroutine set_integer(self, name, value)
+        class(picture_values), intent(inout) :: self
+        character(len=*), intent(in) :: name
+        integer, intent(in) :: value
+        character(len=12) :: digits
+
+        write (digits, '(i0)') value
+        self%text = self%text // name // ' = ' // trim(digits) // new_line('a')
+    end subroutine set_integer
+
+    !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png and .svg with it. `problem` says what
+    !> went wrong.
+    subroutine draw(self, script, directory, stem, problem)
+        class(picture_values), intent(in) :: self
+        character(len=*), intent(in) :: script   !! name of one in output/pictures
         character(len=*), intent(in) :: directory, stem
         character(len=:), allocatable, intent(out) :: problem
-
-        type(output_file) :: script
-
-        call script%create(directory // '/' // stem // '.gp')
-        call write_script(script, stem)
-        call finish_picture(script, directory, stem, problem)
-    end subroutine draw_picture
-
-    !> Ends the script DIRECTORY/STEM.gp and draws its picture. `problem` says what went wrong.
-    subroutine finish_picture(script, directory, stem, problem)
-        type(output_file), intent(inout) :: script
-        character(len=*), intent(in) :: directory, stem
-        character(len=:), allocatable, intent(out) :: problem
-
-        call script%finish()
-        if (script%failed) then
-            problem = 'cannot write ' // directory // '/' // stem // '.gp'
-        else
-            call run_gnuplot(directory, stem, problem)
-        end if
-    end subroutine finish_picture
-
-    !> Draws DIRECTORY/STEM.png with the script DIRECTORY/STEM.gp. `problem` says what went wrong.
-    subroutine run_gnuplot(directory, stem, problem)
-        character(len=*), intent(in) :: directory, stem
-        character(len=:), allocatable, intent(out) :: problem
+        character(len=128), allocatable :: lines(:)
+        type(output_file) :: file
+        logical :: succeeded, in_time
+        integer :: i
 
         problem = ''
-        if (.not. have_command('gnuplot')) then
+        call get_script(script, lines)
+        call file%create(directory // '/' // stem // '.gp')
+        call file%write_line('# gnuplot ' // stem // '.gp')
+        call file%write_line(self%text)
+        do i = 1, size(lines)
+            call file%write_line(trim(lines(i)))
+        end do
+        call file%finish()
+        if (file%failed) then
+            problem = 'cannot write ' // directory // '/' // stem // '.gp'
+        else if (.not. have_command('gnuplot')) then
             problem = 'no picture is drawn: gnuplot is not installed (Debian: package ' &
                 // 'gnuplot-nox); with it, run gnuplot ' // stem // '.gp in ' // directory
-        else if (.not. run_in_directory(directory, 'gnuplot ' // shell_word(stem // '.gp'))) then
-            problem = 'gnuplot failed on ' // stem // '.gp: no picture is drawn'
+        else
+            call run_command('cd ' // shell_word(directory) // ' && exec gnuplot ' &
+                // shell_word(stem // '.gp') // ' >/dev/null 2>&1', time_limit, succeeded, in_time)
+            if (.not. in_time) then
+                problem = 'gnuplot was stopped on ' // stem // '.gp, after a minute or by a signal'
+            else if (.not. succeeded) then
+                problem = 'gnuplot failed on ' // stem // '.gp: no picture is drawn'
+            end if
         end if
-    end subroutine run_gnuplot
-
-    !> Lines of force, of friction, of slip, and what they are seen against.
-    subroutine put_line_styles(script)
-        type(output_file), intent(inout) :: script
-
-        call script%write_line('set style line 1 linewidth 1.5 linecolor "#9400d3"')
-        call script%write_line('set style line 2 linewidth 1.5 linecolor "#0072b2"')
-        call script%write_line('set style line 3 linewidth 1.5 linecolor "#d55e00"')
-        call script%write_line('set style line 9 linewidth 1 linecolor "gray60"')
-    end subroutine put_line_styles
-
-    subroutine write_script(script, stem)
-        type(output_file), intent(inout) :: script
-        character(len=*), intent(in) :: stem
-
-        call put('# Picture of a stickslip run: gnuplot ' // stem // '.gp')
-        call put('file = ' // quoted(stem // '.csv'))
-        call put('set terminal pngcairo size 1200,1000 font "Sans,12"')
-        call put('set output ' // quoted(stem // '.png'))
-        call put('set datafile separator ","')
-        call put_line_styles(script)
-        call put('set multiplot layout 3,1 title ' // quoted(escaped(stem)))
-        call put('set grid')
-        call put('set lmargin 12')
-        call put('set rmargin 4')
-        call put('set key outside top right horizontal')
-        call put('set ylabel "force [F]"')
-        call put('plot file using "time":"friction_force" with lines ls 9 title "friction", \')
-        call put('     file using "time":"spring_force" with lines ls 1 title "spring"')
-        call put('set ylabel "friction coefficient [-]"')
-        call put('plot file using "time":"mu" with lines ls 2 title "mu"')
-        call put('set ylabel "displacement [L]"')
-        call put('set xlabel "time [T]"')
-        call put('plot file using "time":"drive" with lines ls 9 title "drive", \')
-        call put('     file using "time":"slip" with lines ls 3 title "slip"')
-        call put('unset multiplot')
-
-    contains
-
-        subroutine put(line)
-            character(len=*), intent(in) :: line
-
-            call script%write_line(line)
-        end subroutine put
-
-    end subroutine write_script
-
-    !> A text between gnuplot's single quotes.
-    pure function quoted(text) result(inner)
-        character(len=*), intent(in) :: text
-        character(len=:), allocatable :: inner
-        integer :: i
-
-        inner = "'"
-        do i = 1, len(text)
-            inner = inner // text(i:i)
-            if (text(i:i) == "'") inner = inner // "'"
-        end do
-        inner = inner // "'"
-    end function quoted
-
-    !> A text whose signs gnuplot would take for markup are shown as they are.
-    pure function escaped(text) result(plain)
-        character(len=*), intent(in) :: text
-        character(len=:), allocatable :: plain
-        integer :: i
-
-        plain = ''
-        do i = 1, len(text)
-            if (index('_^@{}~&\', text(i:i)) > 0) plain = plain // '\'
-            plain = plain // text(i:i)
-        end do
-    end function escaped
+    end subroutine draw
 
 end module picture

@@ -3,6 +3,7 @@ module point_recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : statev_dissipation, statev_mu, statev_r, statev_slip, statev_status
     use material_point, only : contact_point
+    use number_text, only : full_row
     use text_file, only : output_file
     implicit none
     private
@@ -18,10 +19,11 @@ module point_recorder
 
 contains
 
-    subroutine start(self, name, ndir, tangent)
+    subroutine start(self, name, ndir, internal, tangent)
         class(point_csv), intent(inout) :: self
         character(len=*), intent(in) :: name
         integer, intent(in) :: ndir       !! directions
+        character(len=*), intent(in) :: internal   !! name of the law's internal variable
         logical, intent(in) :: tangent    !! columns for it, in column-major order
         character(len=:), allocatable :: header
         character(len=6) :: entry
@@ -29,7 +31,7 @@ contains
 
         header = 'time,u_n,u_t1,u_t2,t_n,t_t1,t_t2'
         if (ndir == 2) header = 'time,u_n,u_t1,t_n,t_t1'
-        header = header // ',status,mu,R,slip,dissipation,iterations'
+        header = header // ',status,mu,' // trim(internal) // ',slip,dissipation,iterations'
         self%tangent = tangent
         if (tangent) then
             do j = 1, ndir
@@ -53,7 +55,7 @@ contains
         character(len=12) :: count
         integer :: j
 
-        line = in_full(time)
+        line = full_row([time])
         call add(point%u)
         call add(point%traction)
         write (count, '(a, i0)') ',', nint(point%statev(statev_status))
@@ -72,23 +74,10 @@ contains
 
         subroutine add(numbers)
             real(dp), intent(in) :: numbers(:)
-            integer :: i
 
-            do i = 1, size(numbers)
-                line = line // ',' // in_full(numbers(i))
-            end do
+            line = line // ',' // full_row(numbers)
         end subroutine add
 
     end subroutine write_row
-
-    !> 17 significant digits, so that reading them back gives the same bits.
-    pure function in_full(number) result(text)
-        real(dp), intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=24) :: buffer
-
-        write (buffer, '(es24.16e3)') number
-        text = trim(adjustl(buffer))
-    end function in_full
 
 end module point_recorder

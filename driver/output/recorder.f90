@@ -4,14 +4,16 @@ module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : archive
     use chain_events, only : chain_event
-    use field_file, only : netcdf_fields
-    use friction_mod, only : statev_mu, statev_slip
+    use field_file, only : chain_fields
+    use number_text, only : full_row
     use run_observer, only : observer, step_news
-    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row
+    use run_rows, only : event_columns, event_row, n_series, row_clock, series_columns, &
+        series_row
     use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
     use text_file, only : output_file
+    use thinned_series, only : thinned
     implicit none
     private
 
@@ -19,25 +21,25 @@ module recorder
 
     character(len=*), parameter :: chain_events_header = &
         'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended'
-    character(len=*), parameter :: fields_header = 'time,block,slip_rate,slip,mu'
     integer, parameter :: rows_between_flushes = 200
-    integer, parameter, public :: most_in_csv = 1000   !! blocks whose fields fit in a CSV file
 
     type, extends(observer) :: csv_recorder
-        type(output_file) :: series, events, fields
-        type(netcdf_fields) :: netcdf   !! in place of `fields` for a long chain
+        type(output_file) :: series, events
+        type(chain_fields) :: fields
+        type(thinned) :: picture        !! rows for the picture of a long series
         character(len=:), allocatable :: base   !! of the files' names, with the directory
         integer :: n_blocks = 1
         real(dp) :: area = 1.0_dp       !! contact area of a block [L^2]
         type(row_clock) :: clock
+        character(len=:), allocatable :: columns   !! of the time series
         integer :: fields_interval = 0  !! steps between two rows of fields; 0: none
         integer :: rows = 0
         integer :: fields_due = 0       !! steps since the last row of fields
     contains
         procedure :: prepare, open, begin, see, finish, visit
-        procedure :: flush_all, failed
-        procedure, private :: go_on, tell_loss, fields_name, has_long_fields, write_state, &
-            write_event, write_chain_events, write_fields
+        procedure :: flush_all, failed, picture_file
+        procedure, private :: go_on, tell_loss, write_state, write_event, &
+            write_chain_events, write_thinned
     end type csv_recorder
 
 contains
@@ -52,7 +54,9 @@ contains
         self%n_blocks = run%chain%n_blocks
         self%area = run%area
         call self%clock%prepare(run)
+        self%columns = trim(series_columns(run%props))
         self%fields_interval = run%fields
+        call self%picture%prepare(columns=n_series, force=6, speed=4)
     end subroutine prepare
 
     !> Begins the files of a new run. The catalogue of a chain has other columns than that of one
@@ -62,34 +66,24 @@ contains
 
         call self%series%create(self%base // '.csv')
         call self%events%create(self%base // '_events.csv')
-        call self%series%write_line(series_columns)
+        call self%series%write_line(trim(self%columns))
         if (self%n_blocks > 1) then
             call self%events%write_line(chain_events_header)
         else
             call self%events%write_line(event_columns)
         end if
-        if (self%has_long_fields()) then
-            call self%netcdf%create(self%fields_name(), self%n_blocks)
-        else if (self%fields_interval > 0) then
-            call self%fields%create(self%fields_name())
-            call self%fields%write_line(fields_header)
-        end if
+        if (self%fields_interval > 0) call self%fields%create(self%base, self%n_blocks)
         call self%flush_all()
     end subroutine open
 
     !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
     subroutine go_on(self, series, events, fields)
         class(csv_recorder), intent(inout) :: self
-        integer(int64), intent(in) :: series, events   !! bytes
-        integer(int64), intent(in) :: fields           !! bytes, or rows of a NetCDF file
+        integer(int64), intent(in) :: series, events, fields   !! bytes
 
         call self%series%go_on(self%base // '.csv', series)
         call self%events%go_on(self%base // '_events.csv', events)
-        if (self%has_long_fields()) then
-            call self%netcdf%go_on(self%fields_name(), int(fields))
-        else if (self%fields_interval > 0) then
-            call self%fields%go_on(self%fields_name(), fields)
-        end if
+        if (self%fields_interval > 0) call self%fields%go_on(self%base, self%n_blocks, fields)
     end subroutine go_on
 
     !> Row 0 is the initial state.
@@ -99,7 +93,7 @@ contains
         type(step_news), intent(inout) :: news
 
         call self%write_state(start)
-        if (self%fields_interval > 0) call self%write_fields(start, start)
+        if (self%fields_interval > 0) call self%fields%write_record(start, start)
         call self%tell_loss(news)
     end subroutine begin
 
@@ -115,7 +109,7 @@ contains
         if (self%fields_interval > 0) then
             self%fields_due = self%fields_due + 1
             if (self%fields_due == self%fields_interval) then
-                call self%write_fields(old, new)
+                call self%fields%write_record(old, new)
                 self%fields_due = 0
             end if
         end if
@@ -134,8 +128,7 @@ contains
 
         if (self%series%failed) call news%stop_run('cannot write the time series (disk full?)')
         if (self%events%failed) call news%stop_run('cannot write the events (disk full?)')
-        if (self%fields%failed .or. self%netcdf%failed) call news%stop_run( &
-            'cannot write the fields (disk full?)')
+        if (self%fields%file%failed) call news%stop_run('cannot write the fields (disk full?)')
     end subroutine tell_loss
 
     !> Writes what was cut short, and closes the files.
@@ -148,7 +141,7 @@ contains
         call self%series%finish()
         call self%events%finish()
         call self%fields%finish()
-        call self%netcdf%finish()
+        if (self%rows > self%picture%kept()) call self%write_thinned()
         if (self%failed()) call news%stop_run('cannot write the last rows (disk full?)')
     end subroutine finish
 
@@ -160,37 +153,45 @@ contains
 
         series = self%series%bytes
         events = self%events%bytes
-        fields = self%fields%bytes + self%netcdf%rows   ! one of them is 0
+        fields = self%fields%file%bytes
         call file%visit(self%rows)
         call file%visit(self%clock%steps)
         call file%visit(self%fields_due)
+        call self%picture%visit(file)
         call file%visit(series)
         call file%visit(events)
         call file%visit(fields)
         if (file%is_read()) call self%go_on(series, events, fields)
     end subroutine visit
 
-    pure function has_long_fields(self) result(yes)
-        class(csv_recorder), intent(in) :: self
-        logical :: yes
-
-        yes = self%fields_interval > 0 .and. self%n_blocks > most_in_csv
-    end function has_long_fields
-
-    pure function fields_name(self) result(name)
+    !> The file of which a picture is drawn: the series itself, unless it is long.
+    pure function picture_file(self) result(name)
         class(csv_recorder), intent(in) :: self
         character(len=:), allocatable :: name
 
-        name = self%base // '_fields.csv'
-        if (self%n_blocks > most_in_csv) name = self%base // '_fields.nc'
-    end function fields_name
+        name = self%base(index(self%base, '/', back=.true.) + 1:) // '.csv'
+        if (self%rows > self%picture%kept()) name = name(:len(name) - 4) // '_picture.csv'
+    end function picture_file
+
+    subroutine write_thinned(self)
+        class(csv_recorder), intent(inout) :: self
+        type(output_file) :: file
+        integer :: i
+
+        call file%create(self%base // '_picture.csv')
+        call file%write_line(self%columns)
+        do i = 1, self%picture%kept()
+            call file%write_line(full_row(self%picture%rows(:, i)))
+        end do
+        call file%finish()
+        self%series%failed = self%series%failed .or. file%failed
+    end subroutine write_thinned
 
     subroutine flush_all(self)
         class(csv_recorder), intent(inout) :: self
 
         call self%series%flush_lines()
         call self%events%flush_lines()
-        call self%fields%flush_lines()
     end subroutine flush_all
 
     !> Has something been lost on its way to the disk?
@@ -198,16 +199,18 @@ contains
         class(csv_recorder), intent(in) :: self
         logical :: lost
 
-        lost = self%series%failed .or. self%events%failed .or. self%fields%failed &
-            .or. self%netcdf%failed
+        lost = self%series%failed .or. self%events%failed .or. self%fields%file%failed
     end function failed
 
     !> One row of the time series.
     subroutine write_state(self, state)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: state
+        real(dp) :: values(n_series)
 
-        call self%series%write_line(row(series_row(state)))
+        values = series_row(state)
+        call self%series%write_line(full_row(values))
+        call self%picture%add(values)
         self%rows = self%rows + 1
         if (mod(self%rows, rows_between_flushes) == 0) call self%series%flush_lines()
     end subroutine write_state
@@ -222,64 +225,23 @@ contains
         do i = 1, size(news%chain_events)
             associate (event => news%chain_events(i))
                 write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
-                call self%events%write_line(row([event%onset, event%end - event%onset]) // ',' &
-                    // trim(blocks) // ',' // row([event%slip / (event%last - event%first + 1), &
-                    self%area * event%slip, event%peak_velocity]) &
+                call self%events%write_line(full_row([event%onset, event%end - event%onset]) &
+                    // ',' // trim(blocks) // ',' // full_row([event%slip &
+                    / (event%last - event%first + 1), self%area * event%slip, &
+                    event%peak_velocity]) &
                     // merge(',0', ',1', news%cut_short))
             end associate
             call self%events%flush_lines()
         end do
     end subroutine write_chain_events
 
-    !> The blocks after the step from `old` to `new`: a row of the NetCDF file, or in CSV a line
-    !> each and an empty line for gnuplot.
-    subroutine write_fields(self, old, new)
-        class(csv_recorder), intent(inout) :: self
-        type(slider_state), intent(in) :: old, new
-        character(len=12) :: block
-        real(dp) :: dt
-        integer :: i
-
-        dt = max(new%time - old%time, tiny(dt))
-        if (size(new%x) > most_in_csv) then
-            call self%netcdf%write_row(new%time, (new%statev(:, statev_slip) - old%statev(:, &
-                statev_slip)) / dt, new%statev(:, statev_slip), new%statev(:, statev_mu))
-            return
-        end if
-        do i = 1, size(new%x)
-            write (block, '(",", i0, ",")') i
-            call self%fields%write_line(row([new%time]) // trim(block) &
-                // row([(new%statev(i, statev_slip) - old%statev(i, statev_slip)) / dt, &
-                new%statev(i, statev_slip), new%statev(i, statev_mu)]))
-        end do
-        call self%fields%write_line('')
-        call self%fields%flush_lines()
-    end subroutine write_fields
-
     !> One row of the table of events.
     subroutine write_event(self, event)
         class(csv_recorder), intent(inout) :: self
         type(slip_event), intent(in) :: event
 
-        call self%events%write_line(row(event_row(event, self%area)))
+        call self%events%write_line(full_row(event_row(event, self%area)))
         call self%events%flush_lines()
     end subroutine write_event
-
-    !> Numbers with 17 significant digits, so that reading them back gives the same bits.
-    pure function row(numbers) result(line)
-        real(dp), intent(in) :: numbers(:)
-        character(len=:), allocatable :: line
-        character(len=25 * size(numbers)) :: buffer, packed
-        integer :: i, n
-
-        write (buffer, '(*(es24.16e3, :, ","))') numbers
-        n = 0
-        do i = 1, len(buffer)
-            if (buffer(i:i) == ' ') cycle
-            n = n + 1
-            packed(n:n) = buffer(i:i)
-        end do
-        line = packed(:n)
-    end function row
 
 end module recorder

@@ -3,6 +3,7 @@ module run_rows
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use friction_mod, only : statev_mu, statev_r, statev_slip
+    use law_facts, only : internal_variable
     use run_observer, only : step_news
     use run_settings, only : next_row, settings
     use slider_system, only : slider_state
@@ -10,10 +11,9 @@ module run_rows
     implicit none
     private
 
-    public :: event_row, row_clock, series_row
+    public :: event_row, row_clock, series_columns, series_row
 
-    character(len=*), parameter, public :: series_columns = &
-        'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,R,slip'
+    integer, parameter, public :: n_series = 11   !! columns of the time series
     character(len=*), parameter, public :: event_columns = &
         'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
 
@@ -49,14 +49,23 @@ contains
         if (self%steps == self%interval) self%steps = 0
     end subroutine tick
 
+    !> Names of the columns of the time series; the law's internal variable has its own.
+    pure function series_columns(props) result(names)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        character(len=128) :: names
+
+        names = 'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,' &
+            // trim(internal_variable(props)) // ',slip,normal_traction'
+    end function series_columns
+
     !> A row of the time series. Of several blocks it shows the means.
     pure function series_row(state) result(row)
         type(slider_state), intent(in) :: state
-        real(dp) :: row(10)
+        real(dp) :: row(n_series)
 
         row = [state%time, state%drive, mean(state%x), mean(state%v), mean(state%a), &
             mean(state%spring), mean(state%friction), mean(state%statev(:, statev_mu)), &
-            mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip))]
+            mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip)), state%normal]
     end function series_row
 
     pure function mean(values)

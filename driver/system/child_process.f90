@@ -2,12 +2,14 @@
 !> pipe. Processes and not threads: gfortran keeps lengths of character results in static memory, so
 !> that text made by two threads at once gets mixed up; and a child that crashes harms no other.
 module child_process
-    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_size_t
-    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_long, c_null_char, c_null_ptr, &
+        c_ptr, c_size_t
+    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit, real64
+    use platform, only : interrupted, seconds
     implicit none
     private
 
-    public :: child, wait_for_one
+    public :: child, run_command, wait_for_one
 
     type :: child
         private
@@ -63,6 +65,38 @@ module child_process
             integer(c_size_t) :: written
         end function c_write
 
+        function c_waitpid(id, status, options) result(ended) bind(C, name='waitpid')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: id, options
+            integer(c_int), intent(out) :: status
+            integer(c_int) :: ended
+        end function c_waitpid
+
+        function c_execv(path, arguments) result(status) bind(C, name='execv')
+            import :: c_char, c_int, c_ptr
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            type(c_ptr), intent(in) :: arguments(*)
+            integer(c_int) :: status
+        end function c_execv
+
+        function c_kill(id, signal) result(status) bind(C, name='kill')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: id, signal
+            integer(c_int) :: status
+        end function c_kill
+
+        function c_poll(nothing, number, milliseconds) result(status) bind(C, name='poll')
+            import :: c_int, c_long, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: nothing
+            integer(c_long), value, intent(in) :: number
+            integer(c_int), value, intent(in) :: milliseconds
+            integer(c_int) :: status
+        end function c_poll
+
         !> Ends without touching the buffers of files, which are the parent's too.
         subroutine c_end(status) bind(C, name='_exit')
             import :: c_int
@@ -102,7 +136,7 @@ contains
         running = self%id > 0
     end function running
 
-    !> The child's last act: hands one line of text to the parent.
+    !> Hands one line of text to the parent, and ends the child.
     subroutine tell_and_end(self, text)
         class(child), intent(in) :: self
         character(len=*), intent(in) :: text
@@ -146,5 +180,50 @@ contains
         sound = status == 0 .and. index(text, new_line('a')) > 0
         if (sound) text = text(:len(text) - 1)
     end subroutine wait_for_one
+
+    !> Runs a command of the shell, and stops it after a time or when the user interrupts.
+    subroutine run_command(command, limit, succeeded, in_time)
+        character(len=*), intent(in) :: command
+        real(real64), intent(in) :: limit    !! [s]
+        logical, intent(out) :: succeeded
+        logical, intent(out) :: in_time      !! it ended by itself
+        integer(c_int), parameter :: no_wait = 1, sigkill = 9, pause = 20   ! [ms]
+        integer(c_int) :: id, status, ignored
+        real(real64) :: begun
+
+        flush (output_unit)
+        flush (error_unit)
+        begun = seconds()
+        succeeded = .false.
+        in_time = .true.
+        id = c_fork()
+        if (id == 0) call become_shell(command)
+        if (id < 0) return
+        do while (c_waitpid(id, status, no_wait) == 0)
+            in_time = seconds() - begun < limit .and. .not. interrupted()
+            if (.not. in_time) then
+                ignored = c_kill(id, sigkill)
+                ignored = c_waitpid(id, status, 0_c_int)
+                return
+            end if
+            ignored = c_poll(c_null_ptr, 0_c_long, pause)
+        end do
+        succeeded = status == 0
+    end subroutine run_command
+
+    !> The process becomes a shell that runs the command; no way leads back.
+    subroutine become_shell(command)
+        character(len=*), intent(in) :: command
+        character(kind=c_char, len=:), allocatable, target :: name, option, text
+        type(c_ptr) :: arguments(4)
+        integer(c_int) :: ignored
+
+        name = 'sh' // c_null_char
+        option = '-c' // c_null_char
+        text = command // c_null_char
+        arguments = [c_loc(name), c_loc(option), c_loc(text), c_null_ptr]
+        ignored = c_execv('/bin/sh' // c_null_char, arguments)
+        call c_end(127_c_int)
+    end subroutine become_shell
 
 end module child_process

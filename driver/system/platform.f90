@@ -1,14 +1,14 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
     use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, &
-        c_null_char
+        c_null_char, c_null_funptr
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     implicit none
     private
 
     public :: cores, exit_program, have_command, interrupted, is_directory, is_terminal, &
-        make_directory, remove_file, rename_file, run_in_directory, seconds, shell_word, &
-        truncate_file, watch_for_interrupts
+        make_directory, remove_file, rename_file, seconds, shell_word, truncate_file, &
+        watch_for_interrupts
 
     ! A signal handler can leave its message nowhere else.
     logical, volatile :: was_interrupted = .false.
@@ -94,10 +94,13 @@ contains
         before = c_signal(sigterm, c_funloc(note_interrupt))
     end subroutine watch_for_interrupts
 
+    !> A second signal ends the program at once.
     subroutine note_interrupt(number) bind(C)
         integer(c_int), value, intent(in) :: number
+        type(c_funptr) :: before
 
         was_interrupted = .true.
+        before = c_signal(number, c_null_funptr)   ! SIG_DFL
     end subroutine note_interrupt
 
     function interrupted() result(yes)
@@ -183,17 +186,6 @@ contains
             // '[ "${n:-1}" -le 255 ] || n=255; exit "${n:-1}"', exitstat=n, cmdstat=started)
         if (started /= 0 .or. n < 1) n = 1
     end function cores
-
-    !> Runs a shell command inside a directory; its output is thrown away.
-    function run_in_directory(directory, command) result(succeeded)
-        character(len=*), intent(in) :: directory, command
-        logical :: succeeded
-        integer :: status, started
-
-        call execute_command_line('cd ' // shell_word(directory) // ' && ' // command &
-            // ' >/dev/null 2>&1', exitstat=status, cmdstat=started)
-        succeeded = started == 0 .and. status == 0
-    end function run_in_directory
 
     !> A path as one word of the shell, whatever it contains.
     pure function shell_word(path) result(word)

@@ -1,9 +1,9 @@
-!> Text files for results, through the C library: gfortran's own output takes a full disk for
-!> success.
+!> Files for results, text or numbers, through the C library: gfortran's own output takes a full
+!> disk for success.
 module text_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
         c_ptr, c_size_t
-    use, intrinsic :: iso_fortran_env, only : int64
+    use, intrinsic :: iso_fortran_env, only : int64, real64
     use platform, only : truncate_file
     implicit none
     private
@@ -18,7 +18,8 @@ module text_file
         integer(int64), public :: bytes = 0   !! written so far
         logical, public :: failed = .false.   !! a line could not be written, or the file not opened
     contains
-        procedure :: create, go_on, write_line, flush_lines, finish
+        procedure :: create, go_on, write_line, write_numbers, flush_lines, finish
+        procedure, private :: put
     end type output_file
 
     interface
@@ -83,13 +84,36 @@ contains
     subroutine write_line(self, line)
         class(output_file), intent(inout) :: self
         character(len=*), intent(in) :: line
+
+        call self%put(line // new_line('a'))
+    end subroutine write_line
+
+    !> Numbers as they are in memory, eight bytes each.
+    subroutine write_numbers(self, numbers)
+        class(output_file), intent(inout) :: self
+        real(real64), intent(in) :: numbers(:)
+        integer, parameter :: part = 512
+        character(len=8 * part) :: bytes
+        integer :: first, last
+
+        do first = 1, size(numbers), part
+            last = min(first + part - 1, size(numbers))
+            bytes(:8 * (last - first + 1)) = transfer(numbers(first:last), &
+                bytes(:8 * (last - first + 1)))
+            call self%put(bytes(:8 * (last - first + 1)))
+        end do
+    end subroutine write_numbers
+
+    subroutine put(self, text)
+        class(output_file), intent(inout) :: self
+        character(len=*), intent(in) :: text
         integer(c_size_t) :: length
 
         if (self%failed .or. .not. c_associated(self%stream)) return
-        length = len(line, c_size_t) + 1_c_size_t
-        self%failed = c_fwrite(line // new_line('a'), 1_c_size_t, length, self%stream) /= length
+        length = len(text, c_size_t)
+        self%failed = c_fwrite(text, 1_c_size_t, length, self%stream) /= length
         self%bytes = self%bytes + length
-    end subroutine write_line
+    end subroutine put
 
     !> Hands all lines to the operating system.
     subroutine flush_lines(self)

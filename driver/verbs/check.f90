@@ -1,11 +1,9 @@
 !> The verb check: reads and validates an input of any verb, and runs nothing.
 module check
     use, intrinsic :: iso_fortran_env, only : output_unit
-    use field_file, only : netcdf_available
     use namelist_input, only : namelist_file
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
-    use recorder, only : most_in_csv
     use run_reader, only : read_settings
     use run_settings, only : settings
     use sweep_reader, only : read_sweep
@@ -44,9 +42,6 @@ contains
             write (extent, '(i0, a)') size(plan%runs), ' combinations'
         case default
             call read_settings(file, run)
-            if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
-                .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
-                // 'blocks needs NetCDF, which this program was built without')
             if (has_faults(file)) return
             extent = 'adaptive steps'
             if (.not. run%adaptive) write (extent, '(i0, a)') run%n_steps, ' steps'

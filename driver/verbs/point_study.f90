@@ -3,13 +3,14 @@ module point_study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
     use command_line, only : command
     use friction_mod, only : friction_message, statev_dissipation, statev_slip
+    use law_facts, only : internal_variable
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file
-    use point_picture, only : draw_point_picture
     use point_recorder, only : point_csv
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
     use progress_bar, only : progress
+    use run_pictures, only : draw_point
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
         has_faults, is_for, is_readable, tell_failure
     implicit none
@@ -54,7 +55,8 @@ contains
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem
         if (.not. directory_is_ready(wanted%output)) return
-        call records%start(base // '.csv', run%loading%ndir, run%tangent)
+        call records%start(base // '.csv', run%loading%ndir, internal_variable(run%props), &
+            run%tangent)
         if (records%file%failed) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
             return
@@ -71,7 +73,7 @@ contains
             exit_status = exit_failed
         end if
         if (.not. wanted%plot) return
-        call draw_point_picture(wanted%output, wanted%stem, run%loading%ndir, problem)
+        call draw_point(run, wanted%output, wanted%stem, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_point
 

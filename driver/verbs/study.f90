@@ -1,17 +1,15 @@
 !> The verb run: simulates what an input file describes, and reports.
 module study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
-    use chain_picture, only : draw_catalogue, draw_fields
     use checkpoint, only : checkpoint_writer, read_checkpoint
     use command_line, only : command
-    use field_file, only : netcdf_available
     use namelist_input, only : namelist_file
-    use picture, only : draw_picture
     use platform, only : remove_file, seconds, watch_for_interrupts
     use progress_observer, only : progress_watch
-    use recorder, only : csv_recorder, most_in_csv
+    use recorder, only : csv_recorder
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
+    use run_pictures, only : draw_catalogue, draw_fields, draw_run
     use run_reader, only : read_settings
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
@@ -36,9 +34,6 @@ contains
         if (.not. is_readable(input, file)) return
         if (.not. is_for('run', file)) return
         call read_settings(file, run)
-        if (run%fields > 0 .and. run%chain%n_blocks > most_in_csv .and. &
-            .not. netcdf_available) call file%reject('output', 'fields', 'of more than 1000 ' &
-            // 'blocks needs NetCDF, which this program was built without')
         if (.not. has_faults(file)) exit_status = exit_done
     end subroutine read_input
 
@@ -84,7 +79,8 @@ contains
             call tell_failure(wanted%input, result%failure, base)
             exit_status = exit_failed
         end if
-        if (wanted%plot .and. .not. result%interrupted) call draw_pictures(wanted, run, result)
+        if (wanted%plot .and. .not. result%interrupted) call draw_pictures(wanted, run, &
+            records%picture_file(), result)
     end subroutine run_input
 
     !> Simulates with all that watches: files, checkpoints, the progress bar.
@@ -111,18 +107,18 @@ contains
         call simulate(live, observers, result)
     end subroutine watched_run
 
-    subroutine draw_pictures(wanted, run, result)
+    subroutine draw_pictures(wanted, run, file, result)
         type(command), intent(in) :: wanted
         type(settings), intent(in) :: run
+        character(len=*), intent(in) :: file   !! with the time series
         type(outcome), intent(in) :: result
         character(len=:), allocatable :: problem
 
-        call draw_picture(wanted%output, wanted%stem, problem)
-        if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(wanted%output, &
+        call draw_run(run, wanted%output, wanted%stem, file, problem)
+        if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(run, &
+            wanted%output, wanted%stem, problem)
+        if (len(problem) == 0 .and. run%fields > 0) call draw_fields(run, wanted%output, &
             wanted%stem, problem)
-        if (len(problem) == 0 .and. run%fields > 0 .and. run%chain%n_blocks <= most_in_csv) then
-            call draw_fields(wanted%output, wanted%stem, run%chain%slip_rate, problem)
-        end if
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine draw_pictures
 

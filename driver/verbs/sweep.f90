@@ -54,14 +54,14 @@ contains
         if (len(problem) == 0) call write_table(base, plan, rows, problem)
         if (done%failed()) problem = 'cannot write ' // base // '.journal (disk full?)'
         call done%finish()
-        failures = count_failures(plan, rows)
+        failures = count_rows_with(plan, rows, 'failed,')
         if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(base, size(rows), &
             found, failures)
         exit_status = merge(exit_failed, exit_done, failures > 0 .or. len(problem) > 0)
         if (failures > 0) write (error_unit, '(3a, i0, a, i0, 3a)') 'stickslip: ', wanted%input, &
             ': ', failures, ' of ', size(rows), ' combinations failed; why is in ', base, '.csv'
-        if (len(problem) == 0 .and. wanted%plot) call draw_sweep(wanted%output, &
-            wanted%stem // '_sweep', plan%axes, problem)
+        if (len(problem) == 0 .and. wanted%plot) call draw_sweep(plan, wanted%output, &
+            wanted%stem // '_sweep', count_rows_with(plan, rows, 'ok,stick-slip,'), problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine sweep_input
 
@@ -219,16 +219,18 @@ contains
         end do
     end function count_rows
 
-    pure function count_failures(plan, rows) result(n)
+    !> Combinations whose results start with a text.
+    pure function count_rows_with(plan, rows, start) result(n)
         type(sweep_plan), intent(in) :: plan
         type(text_line), intent(in) :: rows(:)
+        character(len=*), intent(in) :: start
         integer :: n, i
 
         n = 0
         do i = 1, size(rows)
-            if (index(rows(i)%text, point_text(plan%point(i)) // 'failed,') == 1) n = n + 1
+            if (index(rows(i)%text, point_text(plan%point(i)) // start) == 1) n = n + 1
         end do
-    end function count_failures
+    end function count_rows_with
 
     subroutine print_summary(base, combinations, found, failures)
         character(len=*), intent(in) :: base

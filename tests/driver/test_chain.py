@@ -5,15 +5,16 @@ STICKSLIP names the program.
 import os
 import random
 import signal
+import struct
 import time
 import unittest
+import xml.etree.ElementTree
 
 from test_long_runs import LongRun
 from test_program import Program, namelist
 
 RUN = {('time', 't_end'): '6', ('output', 'interval'): '50', ('chain', 'n_blocks'): '20',
        ('chain', 'coupling'): '3'}
-LONG_CHAIN = namelist({**RUN, ('chain', 'n_blocks'): '1100', ('output', 'fields'): '5'})
 
 
 class Chain(Program):
@@ -25,12 +26,16 @@ class Chain(Program):
     def series(self):
         return [[float(value) for value in row.values()] for row in self.rows('case_out/case.csv')]
 
-    def slips(self):
+    def slips(self, blocks=20):
         """Slip of the blocks, time by time."""
-        times = {}
-        for row in self.rows('case_out/case_fields.csv'):
-            times.setdefault(row['time'], []).append(float(row['slip']))
-        return list(times.values())
+        return [slip for _, _, slip, _ in self.fields(blocks)]
+
+    def fields(self, blocks):
+        """Time, slip rates, slips and friction coefficients of the blocks, record by record."""
+        record = struct.Struct(f'<{1 + 3 * blocks}d')
+        data = (self.folder / 'case_out/case_fields.bin').read_bytes()
+        return [(row[0], list(row[1:1 + blocks]), list(row[1 + blocks:1 + 2 * blocks]), list(row[1 + 2 * blocks:]))
+                for row in record.iter_unpack(data)]
 
     def assert_close(self, one, other, part):
         """Column by column, as parts of the largest number in a column."""
@@ -61,7 +66,7 @@ class Motion(Chain):
         # their difference is the scatter of strength over the coupling: 1e-7 of a slip
         self.run_chain({('chain', 'n_blocks'): '2', ('chain', 'coupling'): '1e7',
                         ('chain', 'scatter'): '0.2', ('output', 'fields'): '50'})
-        for first, second in self.slips():
+        for first, second in self.slips(2):
             self.assertAlmostEqual(first, second, delta=5e-3)   # R differs a little: 1/m of slip
         self.assertGreater(first, 1.0)
 
@@ -189,11 +194,36 @@ class Catalogue(Chain):
     def test_fields_have_all_their_digits(self):
         self.run_chain({('chain', 'n_blocks'): '2', ('output', 'fields'): '1', ('output', 'interval'): '1',
                         ('time', 't_end'): '3.5'})
-        fields, series = self.rows('case_out/case_fields.csv'), self.series()
-        for i, row in enumerate(series):
-            pair = [float(field['slip']) for field in fields[2 * i:2 * i + 2]]
-            self.assertEqual(float(fields[2 * i]['time']), row[0])
-            self.assertAlmostEqual(sum(pair) / 2, row[9], delta=4e-16 * (1 + row[9]))
+        fields, series = self.fields(2), self.series()
+        self.assertEqual(len(fields), len(series))
+        for (time_, _, slip, mu), row in zip(fields, series):
+            self.assertEqual(time_, row[0])
+            self.assertAlmostEqual(sum(slip) / 2, row[9], delta=4e-16 * (1 + row[9]))
+            self.assertAlmostEqual(sum(mu) / 2, row[7], delta=4e-16)
+
+    def test_fields_are_described_for_paraview(self):
+        self.run_chain({('output', 'fields'): '100'})
+        records = self.fields(20)
+        root = xml.etree.ElementTree.parse(self.folder / 'case_out/case_fields.xdmf').getroot()
+        grid = root.find('Domain/Grid')
+        self.assertEqual(grid.find('Topology').get('Dimensions'), f'{len(records)} 20')
+        self.assertEqual(grid.find('Geometry/DataItem').text.split(), [str(i) for i in range(1, 21)])
+        places = {'slip_rate': 1, 'slip': 21, 'mu': 41}
+        for attribute in grid.findall('Attribute'):
+            part, data = attribute.findall('DataItem/DataItem')
+            self.assertEqual(part.text.split(), ['0', str(places.pop(attribute.get('Name'))), '1', '1',
+                                                 str(len(records)), '20'])
+            self.assertEqual((data.text, data.get('Dimensions')), ('case_fields.bin', f'{len(records)} 61'))
+        self.assertEqual(places, {})
+
+    def test_a_picture_of_fields_is_drawn_from_few_points_and_keeps_the_largest(self):
+        (self.folder / 'case.nml').write_text(namelist({
+            **RUN, ('chain', 'n_blocks'): '700', ('output', 'fields'): '4'}))
+        result = self.run_program('run', 'case.nml')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        cells = [line.split() for line in (self.folder / 'case_out/case_fields.dat').read_text().splitlines() if line]
+        self.assertLess(len(cells), 1e5)
+        self.assertEqual(max(float(cell[2]) for cell in cells), max(max(rates) for _, rates, _, _ in self.fields(700)))
 
     def test_pictures_are_drawn(self):
         (self.folder / 'case.nml').write_text(namelist({**RUN, ('output', 'fields'): '50'}))
@@ -201,6 +231,7 @@ class Catalogue(Chain):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         for name in ('case', 'case_events', 'case_fields'):
             self.assertEqual((self.folder / f'case_out/{name}.png').read_bytes()[:4], b'\x89PNG')
+            self.assertIn(b'</svg>', (self.folder / f'case_out/{name}.svg').read_bytes())
 
 
 class BadChains(Chain):
@@ -230,12 +261,6 @@ class BadChains(Chain):
         self.refused(namelist({**RUN, ('slider', 'mass'): '0'}), '&chain n_blocks = 20: must be 1 without a mass')
         self.refused(namelist({**RUN, ('friction', 'mu_k'): '0.4'}), '&chain slip_rate: is missing')
         self.refused(namelist({('output', 'fields'): '5'}), '&output fields = 5: needs a chain')
-        if self.netcdf_is_missing():
-            self.refused(LONG_CHAIN, '&output fields = 5: of more than 1000 blocks needs NetCDF')
-
-    def netcdf_is_missing(self):
-        result = self.run_text(LONG_CHAIN, verb='check')
-        return result.returncode != 0 and 'built without' in result.stderr
 
 
 class Resumed(LongRun):
@@ -268,7 +293,7 @@ class Resumed(LongRun):
             process = self.start('--output', 'parts', *resume)
             self.assertEqual((process.communicate(timeout=120)[1], process.returncode), ('', 0))
         names = sorted(path.name for path in (self.folder / 'whole').iterdir())
-        self.assertEqual(len(names), 3)   # series, events, fields
+        self.assertEqual(len(names), 4)   # series, events, fields and their description
         for name in names:
             self.assertEqual((self.folder / 'parts' / name).read_bytes(),
                              (self.folder / 'whole' / name).read_bytes())
@@ -279,11 +304,8 @@ class Resumed(LongRun):
     def test_a_killed_chain_with_adaptive_steps_resumes_to_the_same_bytes(self):
         self.stop_and_compare({('time', 'rtol'): '1e-5', ('output', 'fields'): '200', ('time', 't_end'): '4'})
 
-    def test_a_killed_long_chain_resumes_to_the_same_netcdf_file(self):
-        if 'built without' in self.run_text(LONG_CHAIN, verb='check').stderr:
-            self.skipTest('the program has no NetCDF')
+    def test_a_killed_long_chain_resumes_to_the_same_bytes(self):
         self.stop_and_compare({('chain', 'n_blocks'): '1100', ('output', 'fields'): '20', ('time', 't_end'): '6'})
-        self.assertEqual((self.folder / 'whole/case_fields.nc').read_bytes()[:4], b'CDF\x02')
 
 
 if __name__ == '__main__':

@@ -139,7 +139,7 @@ class InitialState(Columns):
             self.assertAlmostEqual(run['friction_force'][0], 6.0, delta=1e-14)
             self.assertLess(max(abs(v - 1e-3) for v in run['velocity']), 1e-9)
             self.assertLess(max(abs(mu - 0.6) for mu in run['mu']), 1e-8)
-            self.assertLess(max(abs(theta - 10) for theta in run['R']), 1e-5)
+            self.assertLess(max(abs(theta - 10) for theta in run['theta']), 1e-5)
 
     def test_energy_that_was_there_at_the_start_is_booked(self):
         result = self.run_text(namelist({('initial', 'spring_force'): '2', ('time', 'dt'): '1e-5'}),

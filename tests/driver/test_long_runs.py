@@ -86,7 +86,7 @@ class StopAndGo(LongRun):
         self.assertIn('interrupted; stickslip run with --resume', errors)
         self.assertTrue((self.folder / 'case_out/case.checkpoint').exists())
         lines = (self.folder / 'case_out/case.csv').read_text().splitlines()
-        self.assertEqual({len(line.split(',')) for line in lines}, {10})
+        self.assertEqual({len(line.split(',')) for line in lines}, {11})
 
     def test_resuming_what_cannot_be_resumed_is_refused(self):
         text = FIXED.replace('t_end = 40', 't_end = 4e4')

@@ -89,7 +89,7 @@ class GoodInput(Program):
         self.assertEqual(result.stderr, '')
         rows = self.rows('case_out/case.csv')
         self.assertEqual(','.join(rows[0]), 'time,drive,displacement,velocity,acceleration,'
-                         'spring_force,friction_force,mu,R,slip')
+                         'spring_force,friction_force,mu,R,slip,normal_traction')
         self.assertEqual(len(rows), 101)
         self.assertEqual([float(rows[0][key]) for key in ('time', 'drive', 'mu', 'R', 'slip')],
                          [0, 0, 0.4, 0, 0])
@@ -238,10 +238,10 @@ class Laws(Program):
                     continue
                 x = slip / 0.01
                 if evolution == 'ageing':
-                    theta = old['R'] * math.exp(-x) - dt * math.expm1(-x) / x
+                    theta = old['theta'] * math.exp(-x) - dt * math.expm1(-x) / x
                 else:
-                    theta = old['R'] * (dt / (x * old['R']))**-math.expm1(-x)
-                self.assertAlmostEqual(new['R'] / theta, 1.0, delta=1e-6)
+                    theta = old['theta'] * (dt / (x * old['theta']))**-math.expm1(-x)
+                self.assertAlmostEqual(new['theta'] / theta, 1.0, delta=1e-6)
                 mu = 0.01 * math.asinh(slip / dt / 0.002
                                        * math.exp((0.6 + 0.015 * math.log(theta / 10)) / 0.01))
                 self.assertAlmostEqual(new['mu'], mu, delta=1e-8)

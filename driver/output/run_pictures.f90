@@ -1,0 +1,81 @@
+!> The pictures of a run, of a chain's events and fields, and of a contact point's path.
+module run_pictures
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use field_file, only : sample_fields
+    use law_facts, only : internal_variable
+    use picture, only : picture_values
+    use point_settings, only : point_run
+    use run_settings, only : settings
+    implicit none
+    private
+
+    public :: draw_catalogue, draw_fields, draw_point, draw_run
+
+contains
+
+    !> DIRECTORY/STEM.png, from the time series in FILE. `problem` says what went wrong.
+    subroutine draw_run(run, directory, stem, file, problem)
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: directory, stem
+        character(len=*), intent(in) :: file   !! in that directory
+        character(len=:), allocatable, intent(out) :: problem
+        real(dp), parameter :: smallest_part = 1.0e-9_dp   !! of the drive's speed, as a slip rate
+        type(picture_values) :: values
+
+        call values%begin(stem, file, run%units)
+        call values%set('area', run%area)
+        call values%set('internal', trim(internal_variable(run%props)))
+        call values%set('slowest', smallest_part * maxval(abs(run%drive%velocity)))
+        call values%set('thinned', merge(0, 1, file == stem // '.csv'))
+        if (internal_variable(run%props) == 'theta') then
+            call values%draw('run_rate_state', directory, stem, problem)
+        else
+            call values%draw('run', directory, stem, problem)
+        end if
+    end subroutine draw_run
+
+    !> DIRECTORY/STEM_events.png, from the catalogue of a chain.
+    subroutine draw_catalogue(run, directory, stem, problem)
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+        type(picture_values) :: values
+
+        call values%begin(stem // '_events', stem // '_events.csv', run%units)
+        call values%draw('catalogue', directory, stem // '_events', problem)
+    end subroutine draw_catalogue
+
+    !> DIRECTORY/STEM_fields.png, from the fields of a chain.
+    subroutine draw_fields(run, directory, stem, problem)
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+        real(dp), parameter :: shown = 0.01_dp   !! least slip rate, part of that of an event
+        type(picture_values) :: values
+        logical :: sampled
+
+        call sample_fields(directory // '/' // stem, run%chain%n_blocks, sampled)
+        if (.not. sampled) then
+            problem = 'the fields cannot be sampled for a picture'
+            return
+        end if
+        call values%begin(stem // '_fields', stem // '_fields.dat', run%units)
+        call values%set('least', shown * run%chain%slip_rate)
+        call values%draw('fields', directory, stem // '_fields', problem)
+    end subroutine draw_fields
+
+    !> DIRECTORY/STEM.png, from the rows of a path.
+    subroutine draw_point(run, directory, stem, problem)
+        type(point_run), intent(in) :: run
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+        real(dp), parameter :: most_points = 1.0e5_dp
+        type(picture_values) :: values
+
+        call values%begin(stem, stem // '.csv', run%units)
+        call values%set('directions', run%loading%ndir)
+        call values%set('step', max(1, ceiling(run%loading%increments() / most_points)))
+        call values%draw('point', directory, stem, problem)
+    end subroutine draw_point
+
+end module run_pictures
