@@ -1,6 +1,14 @@
-!> Finds slip events in the force of the drive spring: falls from a peak to a trough that both
-!> outlast noise. Ripples smaller than a threshold do not count, neither as events nor as their
-!> ends.
+!> Finds slip events in the force of the drive spring: falls in the sense of the loading, in which
+!> the block slips faster than the drive can account for.
+!>
+!> A fall goes from a peak to a trough and is over when the force has risen again, by `drop` or so,
+!> and by a twentieth of the fall, so that ringing does not divide it. It is an event if it
+!> is larger than `drop` and the slip rate in it exceeds `slip_rate`, or without that a multiple of
+!> the drive's largest speed since the peak. In a hold the drive counts as fast as before.
+!> Everything is looked at in the sense of the loading: a mirrored motion has the same events.
+!>
+!> The sense turns once the drive has come back by so much that the force could change by `drop`;
+!> meanwhile, behind the place that the drive has reached, nothing counts.
 module slip_events
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
@@ -9,6 +17,13 @@ module slip_events
 
     public :: event_finder, moment, slip_event, turning_point
 
+    !> A harmonic oscillation that just sticks reaches twice the drive's speed, forced modulation of
+    !> stable sliding a little more than once.
+    real(dp), parameter :: fast = 1.5_dp
+    !> Rise after a fall that ends it: `drop`, but at least and at most these parts of the fall.
+    real(dp), parameter :: least_rise = 0.05_dp, most_rise = 0.2_dp
+    real(dp), parameter :: round_off = 1.0e-3_dp   !! part of the slack that is no way back
+
     !> What the finder looks at in one instant.
     type :: moment
         real(dp) :: time = 0.0_dp       !! [T]
@@ -16,10 +31,12 @@ module slip_events
         real(dp) :: slip = 0.0_dp       !! accumulated [L]
         real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
         real(dp) :: rate = 0.0_dp       !! of the force [F/T]
+        real(dp) :: drive = 0.0_dp      !! position of the spring's far end [L]
     contains
-        procedure, private :: visit => visit_moment
+        procedure, private :: visit => visit_moment, mirrored
     end type moment
 
+    !> Magnitudes are positive, whichever way the drive goes.
     type :: slip_event
         real(dp) :: onset = 0.0_dp            !! time of the peak force [T]
         real(dp) :: duration = 0.0_dp         !! from peak to trough [T]
@@ -33,19 +50,164 @@ module slip_events
     end type slip_event
 
     type :: event_finder
-        real(dp) :: threshold = 0.0_dp     !! smallest fall and rise that count [F]
-        logical :: started = .false.
-        logical :: falling = .false.       !! the fall since the peak has passed the threshold
-        type(moment) :: peak, trough       !! extremes since the last turn
-        real(dp) :: fastest = 0.0_dp       !! largest velocity since the peak [L/T]
-        type(slip_event) :: current        !! the fall so far
-        logical :: any_before = .false.
-        real(dp) :: last_onset = 0.0_dp    !! of the event before [T]
+        real(dp) :: drop = 0.0_dp          !! smallest fall and rise that count [F]
+        real(dp) :: slip_rate = 0.0_dp     !! that is fast [L/T]; 0: by the drive's speed
+        real(dp) :: stiffness = 1.0_dp     !! of the drive spring [F/L]
+        real(dp) :: speed = 0.0_dp         !! of the drive when it last moved [L/T]
+        integer, private :: sense = 1      !! of the loading, 1 or -1
+        logical, private :: started = .false.
+        real(dp), private :: reached = 0.0_dp     !! farthest place of the drive in that sense [L]
+        real(dp), private :: change = 0.0_dp      !! of the force in the step before [F]
+        type(moment), private :: peak, trough     !! extremes since the last turn
+        real(dp), private :: fastest = 0.0_dp     !! largest velocity since the peak [L/T]
+        real(dp), private :: slipping = 0.0_dp    !! largest slip rate since the peak [L/T]
+        real(dp), private :: driving = 0.0_dp     !! largest speed of the drive since the peak [L/T]
+        type(slip_event), private :: current      !! the fall so far
+        logical, private :: is_event = .false.    !! it was fast enough to be an event
+        logical, private :: any_before = .false.
+        real(dp), private :: last_onset = 0.0_dp  !! of the event before [T]
     contains
-        procedure :: look, visit
+        procedure :: follow, give_sense, visit
+        procedure, private :: look, start_at, conclude
     end type event_finder
 
 contains
+
+    !> The sense of the loading at the start, and the speed that the drive counts to have if it does
+    !> not move at first.
+    pure subroutine give_sense(self, velocity)
+        class(event_finder), intent(inout) :: self
+        real(dp), intent(in) :: velocity   !! of the drive when it first moves [L/T]
+
+        self%sense = merge(-1, 1, velocity < 0.0_dp)
+        self%speed = abs(velocity)
+    end subroutine give_sense
+
+    !> Takes in a step, and hands over the events that are known to have ended in it.
+    pure subroutine follow(self, old, new, events)
+        class(event_finder), intent(inout) :: self
+        type(moment), intent(in) :: old, new   !! `new` is the `old` of the next step
+        type(slip_event), allocatable, intent(inout) :: events(:)   !! they are added to these
+        type(moment) :: before, now, turn
+        real(dp) :: slip_rate, slack
+        logical :: turns
+
+        before = old%mirrored(self%sense)
+        now = new%mirrored(self%sense)
+        slip_rate = (new%slip - old%slip) / (new%time - old%time)
+        if (abs(new%drive - old%drive) > 0.0_dp) self%speed = abs(new%drive - old%drive) &
+            / (new%time - old%time)
+        if (.not. self%started) then
+            call self%start_at(before)
+            self%reached = before%drive
+        end if
+        slack = self%drop / self%stiffness
+        if (now%drive < self%reached - slack) then
+            call self%conclude(events)
+            self%sense = -self%sense
+            call self%start_at(new%mirrored(self%sense))
+            self%reached = self%sense * new%drive
+        else if (now%drive >= self%reached - round_off * slack) then
+            call turning_point(before, now, turn, turns)
+            if (turns) turns = beyond(before, now, turn) <= 2.0_dp * max(self%change, &
+                abs(now%force - before%force))
+            if (turns .and. before%drive >= self%reached - round_off * slack) then
+                call self%look(turn, slip_rate, events)
+            end if
+            call self%look(now, slip_rate, events)
+            self%reached = max(self%reached, now%drive)
+        end if
+        self%change = abs(new%force - old%force)
+    end subroutine follow
+
+    !> By how much does the force at a turn within a step exceed those at its ends? More than steps
+    !> change it is not to be believed: velocities at the ends of long steps are uncertain.
+    pure function beyond(before, now, turn) result(excess)
+        type(moment), intent(in) :: before, now, turn
+        real(dp) :: excess   !! [F]
+
+        excess = max(turn%force - max(before%force, now%force), &
+            min(before%force, now%force) - turn%force)
+    end function beyond
+
+    !> Takes in an instant. An event is known once the force has risen again.
+    pure subroutine look(self, now, slip_rate, events)
+        class(event_finder), intent(inout) :: self
+        type(moment), intent(in) :: now
+        real(dp), intent(in) :: slip_rate   !! in the step [L/T]
+        type(slip_event), allocatable, intent(inout) :: events(:)
+        real(dp) :: fall
+
+        fall = self%peak%force - self%trough%force
+        if (fall > self%drop .and. now%force > self%trough%force + max(least_rise * fall, &
+            min(self%drop, most_rise * fall))) then
+            call self%conclude(events)
+            call self%start_at(now)
+        else if (now%force >= self%peak%force) then
+            call self%start_at(now)
+        else
+            call follow_fall(self, now, slip_rate)
+        end if
+    end subroutine look
+
+    !> A peak that nothing has followed yet.
+    pure subroutine start_at(self, now)
+        class(event_finder), intent(inout) :: self
+        type(moment), intent(in) :: now
+
+        self%started = .true.
+        self%is_event = .false.
+        self%peak = now
+        self%trough = now
+        self%fastest = now%velocity
+        self%slipping = 0.0_dp
+        self%driving = self%speed
+    end subroutine start_at
+
+    pure subroutine follow_fall(self, now, slip_rate)
+        type(event_finder), intent(inout) :: self
+        type(moment), intent(in) :: now
+        real(dp), intent(in) :: slip_rate   !! in the step [L/T]
+        real(dp) :: limit
+
+        self%fastest = max(self%fastest, now%velocity)
+        self%slipping = max(self%slipping, slip_rate)
+        self%driving = max(self%driving, self%speed)
+        if (now%force > self%trough%force) return
+        self%trough = now
+        self%current%onset = self%peak%time
+        self%current%duration = now%time - self%peak%time
+        self%current%force_drop = self%peak%force - now%force
+        self%current%slip = now%slip - self%peak%slip
+        self%current%peak_velocity = self%fastest
+        limit = self%slip_rate
+        if (limit <= 0.0_dp) limit = fast * self%driving
+        self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit
+    end subroutine follow_fall
+
+    !> The fall is over: adds it to the events if it is one.
+    pure subroutine conclude(self, events)
+        class(event_finder), intent(inout) :: self
+        type(slip_event), allocatable, intent(inout) :: events(:)
+
+        if (.not. self%is_event) return
+        self%current%first = .not. self%any_before
+        self%current%recurrence = 0.0_dp
+        if (self%any_before) self%current%recurrence = self%current%onset - self%last_onset
+        self%any_before = .true.
+        self%last_onset = self%current%onset
+        events = [events, self%current]
+    end subroutine conclude
+
+    !> The same in the sense of the loading.
+    pure function mirrored(self, sense) result(image)
+        class(moment), intent(in) :: self
+        integer, intent(in) :: sense   !! 1 or -1
+        type(moment) :: image
+
+        image = moment(self%time, sense * self%force, self%slip, sense * self%velocity, &
+            sense * self%rate, sense * self%drive)
+    end function mirrored
 
     !> The moment between two others at which the force turns, by cubic interpolation.
     pure subroutine turning_point(a, b, between, found)
@@ -72,60 +234,26 @@ contains
         between%force = a%force + s * (c0 + s * (0.5_dp * c1 + s * c2 / 3.0_dp))
         between%slip = a%slip + s * (b%slip - a%slip)
         between%velocity = a%velocity + s * (b%velocity - a%velocity)
+        between%drive = a%drive + s * (b%drive - a%drive)
     end subroutine turning_point
-
-    !> Takes in the next instant. An event is known once the force has risen again.
-    pure subroutine look(self, now, event, found)
-        class(event_finder), intent(inout) :: self
-        type(moment), intent(in) :: now
-        type(slip_event), intent(out) :: event
-        logical, intent(out) :: found
-
-        found = self%falling .and. now%force > self%trough%force + self%threshold
-        if (found) then
-            event = self%current
-            event%first = .not. self%any_before
-            if (self%any_before) event%recurrence = event%onset - self%last_onset
-            self%any_before = .true.
-            self%last_onset = event%onset
-        end if
-        if (found .or. .not. self%started .or. (now%force >= self%peak%force)) then
-            self%started = .true.
-            self%falling = .false.
-            self%peak = now
-            self%trough = now
-            self%fastest = now%velocity
-        else
-            call follow_fall(self, now)
-        end if
-    end subroutine look
-
-    pure subroutine follow_fall(self, now)
-        type(event_finder), intent(inout) :: self
-        type(moment), intent(in) :: now
-
-        self%fastest = max(self%fastest, now%velocity)
-        self%falling = self%falling .or. now%force < self%peak%force - self%threshold
-        if (now%force > self%trough%force) return
-        self%trough = now
-        self%current%onset = self%peak%time
-        self%current%duration = now%time - self%peak%time
-        self%current%force_drop = self%peak%force - now%force
-        self%current%slip = now%slip - self%peak%slip
-        self%current%peak_velocity = self%fastest
-    end subroutine follow_fall
 
     !> Reads or writes what has to be kept to go on.
     subroutine visit(self, file)
         class(event_finder), intent(inout) :: self
         type(archive), intent(inout) :: file
 
+        call file%visit(self%speed)
+        call file%visit(self%sense)
         call file%visit(self%started)
-        call file%visit(self%falling)
+        call file%visit(self%reached)
+        call file%visit(self%change)
         call self%peak%visit(file)
         call self%trough%visit(file)
         call file%visit(self%fastest)
+        call file%visit(self%slipping)
+        call file%visit(self%driving)
         call self%current%visit(file)
+        call file%visit(self%is_event)
         call file%visit(self%any_before)
         call file%visit(self%last_onset)
     end subroutine visit
@@ -139,6 +267,7 @@ contains
         call file%visit(self%slip)
         call file%visit(self%velocity)
         call file%visit(self%rate)
+        call file%visit(self%drive)
     end subroutine visit_moment
 
     subroutine visit_event(self, file)

@@ -9,15 +9,11 @@ module slip_observer
     use run_outcome, only : event_totals
     use run_settings, only : settings
     use slider_system, only : slider_state
-    use slip_events, only : event_finder, moment, slip_event, turning_point
+    use slip_events, only : event_finder, moment, slip_event
     implicit none
     private
 
     public :: slip_watch
-
-    !> A fall of the spring force counts as a slip event from this part of the static friction force
-    !> on.
-    real(dp), parameter :: smallest_drop = 0.01_dp
 
     type, extends(observer) :: slip_watch
         type(programme) :: drive
@@ -28,7 +24,6 @@ module slip_observer
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
         procedure :: prepare, see, visit
-        procedure, private :: look
     end type slip_watch
 
 contains
@@ -39,26 +34,28 @@ contains
 
         self%drive = run%drive
         self%stiffness = run%stiffness
-        self%finder%threshold = smallest_drop * run%area &
-            * typical_coefficient(run%props) * run%drive%largest_normal()
+        self%finder%drop = run%event_drop * run%area * typical_coefficient(run%props) &
+            * run%drive%largest_normal()
+        self%finder%slip_rate = run%event_slip_rate
+        self%finder%stiffness = run%stiffness
+        call self%finder%give_sense(run%drive%first_velocity())
         allocate (self%pieces(run%drive%listed), self%onsets(0))
     end subroutine prepare
 
-    !> Looks at the end of a step and where the force turns within.
     subroutine see(self, old, new, news)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(step_news), intent(inout) :: news
-        type(moment) :: turn, now
-        logical :: found
-        integer :: i
+        integer :: i, k
 
         i = self%drive%piece(old%time)
-        now = seen(self, new, i)
-        call turning_point(seen(self, old, i), now, turn, found)
-        if (found .and. new%time <= self%drive%next_start(old%time)) call self%look(turn, news)
-        call self%look(now, news)
-        self%peak_velocity = max(self%peak_velocity, maxval(new%v))
+        call self%finder%follow(seen(self, old, i), seen(self, new, i), news%slip_events)
+        do k = 1, size(news%slip_events)
+            i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
+            call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))
+            self%onsets = [self%onsets, news%slip_events(k)%onset]
+        end do
+        self%peak_velocity = max(self%peak_velocity, maxval(abs(new%v)))
     end subroutine see
 
     !> What the finder looks at, as means over the blocks.
@@ -81,24 +78,8 @@ contains
         end do
         velocity = velocity / n
         now = moment(state%time, spring / n, slip / n, velocity, &
-            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity))
+            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive)
     end function seen
-
-    subroutine look(self, now, news)
-        class(slip_watch), intent(inout) :: self
-        type(moment), intent(in) :: now
-        type(step_news), intent(inout) :: news
-        type(slip_event) :: event
-        logical :: found
-        integer :: i
-
-        call self%finder%look(now, event, found)
-        if (.not. found) return
-        i = min(self%drive%piece(event%onset), self%drive%listed)
-        call add_event(self%pieces(i), event, self%drive%start(i))
-        self%onsets = [self%onsets, event%onset]
-        news%slip_events = [news%slip_events, event]
-    end subroutine look
 
     !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time
     !> that began in the piece before says nothing about either.

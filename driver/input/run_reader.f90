@@ -48,6 +48,7 @@ contains
         call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
+        call read_events(file, run)
         call read_units(file, run%units)
         call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
@@ -56,6 +57,17 @@ contains
         call file%refuse_unknown()
         run%fingerprint = fingerprint_of(file%listing(), run%drive)
     end subroutine read_settings
+
+    !> What counts as a slip event.
+    subroutine read_events(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+
+        if (file%has_group('events')) continue
+        call file%get_real('events', 'drop', run%event_drop, above(0.0_dp), default=1.0e-3_dp)
+        if (file%given('events', 'slip_rate')) call file%get_real('events', 'slip_rate', &
+            run%event_slip_rate, above(0.0_dp))
+    end subroutine read_events
 
     !> A number that is another one for any other input, but for keys of &output that change no
     !> results.

@@ -21,7 +21,7 @@ module loading_programme
         integer :: listed = 1                      !! pieces that the summary tells apart
     contains
         procedure :: piece, position, drive_velocity, normal_traction, largest_normal, next_start
-        procedure :: divide, add_up_travel
+        procedure :: first_velocity, divide, add_up_travel
     end type programme
 
 contains
@@ -90,6 +90,21 @@ contains
 
         p = maxval(self%normal) + self%amplitude
     end function largest_normal
+
+    !> Mean velocity in the first piece in which the drive moves; 0 if it never does.
+    pure function first_velocity(self) result(v)
+        class(programme), intent(in) :: self
+        real(dp) :: v               !! [L/T]
+        integer :: i
+
+        v = 0.0_dp
+        do i = 1, size(self%start)
+            v = self%velocity(i)
+            if (i < size(self%start)) v = v + 0.5_dp * self%acceleration(i) &
+                * (self%start(i + 1) - self%start(i))
+            if (abs(v) > 0.0_dp) return
+        end do
+    end function first_velocity
 
     !> When the piece that holds at time `t` ends; never, for the last one.
     pure function next_start(self, t) result(t_next)

@@ -32,6 +32,8 @@ module run_settings
         integer :: interval = 1             !! steps between two rows of the CSV file
         real(dp) :: every = 0.0_dp          !! time between two rows; 0: rows by `interval` [T]
         integer :: fields = 0               !! steps between two rows of a chain's fields; 0: none
+        real(dp) :: event_drop = 1.0e-3_dp  !! of slip events: part of the static friction force
+        real(dp) :: event_slip_rate = 0.0_dp   !! slip rate in them [L/T]; 0: by the drive's speed
         integer :: n_steps = 0              !! follows from t_end and dt
         type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results

@@ -188,6 +188,7 @@ contains
             '             or file; normal_change, normal_amplitude, _frequency, _phase', &
             '  &time      t_end, dt [T], beta (0.25), gamma (0.5), tolerance (1e-10),', &
             '             max_iterations (25); adaptive with rtol, dt_min, dt_max; rho_infinity', &
+            '  &events    drop (1e-3), part of the static friction force; slip_rate [L/T]', &
             '  &output    interval (1): steps between two rows, or every: time between them [T];', &
             '             fields (0): of a chain; checkpoint (60) [s]', &
             '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &

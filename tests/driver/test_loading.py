@@ -292,17 +292,18 @@ class AdaptiveSteps(Columns):
             self.assertLess(min(abs(t - time) for time in run['time']), 1e-15)
 
     def test_long_steps_show_all_falls_of_the_force(self):
-        # While the contact is open the block swings on its spring, exactly in a step of any length; each fall of the
-        # force counts as an event all the same. Newmark's steps see them because they are short.
+        # While the contact is open the block swings on its spring, exactly in a step of any length. Rows show each fall
+        # all the same, as those of Newmark's steps do because they are short; none is a slip event: nothing slips.
         counts = []
         for changes in ({('time', 'rtol'): '1e-5'}, {('time', 'rtol'): '1e-7', ('time', 'rho_infinity'): '1'}):
-            text = namelist({('time', 't_end'): '10', ('drive', 'velocity'): '1', ('drive', 'duration'): '3, 2, 5',
-                             ('drive', 'normal'): '10, 0, 10', **changes}, [('time', 'dt')])
-            result = self.run_text(text, '--no-plot')
-            self.assertEqual((result.returncode, result.stderr), (0, ''))
-            counts.append(len(self.rows('case_out/case_events.csv')))
+            run = self.run_columns(namelist({('time', 't_end'): '10', ('drive', 'velocity'): '1', ('drive', 'duration'): '3, 2, 5',
+                                             ('drive', 'normal'): '10, 0, 10', **changes}, [('time', 'dt')]))
+            force = [f for t, f in zip(run['time'], run['spring_force']) if 3 < t <= 5]
+            counts.append(sum(b < a and b <= c and b < -0.1 for a, b, c in zip(force, force[1:], force[2:])))
+            onsets = [float(row['onset']) for row in self.rows('case_out/case_events.csv')]
+            self.assertFalse([onset for onset in onsets if 3 < onset < 5])
         self.assertEqual(counts[0], counts[1])
-        self.assertGreater(counts[0], 4)
+        self.assertGreater(counts[0], 2)
 
     def test_rows_come_at_even_times_and_do_not_change_the_events(self):
         text = namelist({('time', 't_end'): '5', ('time', 'rtol'): '1e-8', ('friction', 'scheme'): "'exact_rate'",

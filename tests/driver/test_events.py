@@ -1,0 +1,127 @@
+"""Slip events and what is read off the pieces of a programme, as a user sees them."""
+import math
+import unittest
+
+from test_program import INPUTS, Program, namelist
+
+BLOCK = """&friction law='subloading', alpha_n=1, alpha_t=1, mu_s=0.4, mu_k=0.2, kappa=10, xi=10, m=1000 /
+&slider mass=1e-3, stiffness=1, damping=0.01, area=1000, normal_traction=0.01 /
+"""
+RATE_AND_STATE = """&friction law='rate_and_state' alpha_n=1.0 alpha_t=1.0 a=A b=B d_c=10. v0=1. f0=0.75 theta_0=THETA /
+&slider mass=0.0 stiffness=STIFFNESS damping=2.0e-5 normal_traction=1.0 /
+"""
+
+
+class Events(Program):
+    def events(self, text, stem='case'):
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.said = result.stdout
+        return [{key: float(value) for key, value in row.items()} for row in self.rows(f'case_out/{stem}_events.csv')]
+
+    def counted(self):
+        return int(self.said.split('slip events')[1].split()[0])
+
+    def same(self, left, right):
+        self.assertEqual(len(left), len(right))
+        for a, b in zip(left, right):
+            for key in a:
+                self.assertTrue(a[key] == b[key] or math.isnan(a[key]) and math.isnan(b[key]), (key, a, b))
+
+    def test_a_block_pulled_the_other_way_has_the_same_events(self):
+        for steps in ('dt=1e-3', 'rtol=1e-6'):
+            tables = [self.events(BLOCK + f'&drive velocity={v} / &time t_end=30, {steps} /') for v in (1, -1)]
+            self.same(*tables)
+            self.assertGreater(len(tables[1]), 7)
+            for event in tables[1]:
+                self.assertAlmostEqual(event['duration'], 0.118, delta=1e-3)
+                self.assertAlmostEqual(event['peak_velocity'], 46.8, delta=0.3)
+                self.assertAlmostEqual(event['slip'], 3.12, delta=1e-2)
+                self.assertAlmostEqual(event['stress_drop'], 3.0e-3, delta=2e-5)
+
+    def test_a_reciprocating_drive_has_events_in_both_senses_and_none_where_it_turns(self):
+        text = BLOCK + '&drive velocity=VELOCITIES, duration=4*20.0 / &time t_end=80 rtol=1e-6 / &output every=0.02 /'
+        there = self.events(text.replace('VELOCITIES', '1, -1, 1, -1'))
+        self.same(there, self.events(text.replace('VELOCITIES', '-1, 1, -1, 1')))
+        counts = [sum(20 * k <= event['onset'] < 20 * (k + 1) for event in there) for k in range(4)]
+        self.assertEqual(counts[0], 6)
+        self.assertGreater(min(counts), 3)
+        for event in there:
+            self.assertAlmostEqual(event['duration'], 0.118, delta=1e-3)
+            self.assertAlmostEqual(event['stress_drop'], 3.0e-3, delta=2e-5)
+
+    def test_a_sweep_sees_the_same_events_in_both_senses(self):
+        text = BLOCK + "&drive / &time t_end=20, dt=1e-3 / &sweep key='drive%velocity', values=1, -1 /"
+        result = self.run_text(text, '--no-plot', verb='sweep')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        forth, back = self.rows('case_out/case_sweep.csv')
+        self.assertEqual(forth['regime'], 'stick-slip')
+        for key in ('regime', 'events', 'late_events', 'period', 'stress_drop', 'peak_velocity'):
+            self.assertEqual(forth[key], back[key], key)
+
+    def test_a_chain_s_summary_counts_the_same_events_in_both_senses(self):
+        said = []
+        for velocity in ('1', '-1'):
+            self.events(BLOCK + f'&drive velocity={velocity} / &chain n_blocks=3, coupling=4, scatter=0.02 / &time t_end=20, dt=1e-3 /')
+            said.append([line for line in self.said.splitlines() if 'work' not in line])
+        self.assertEqual(said[0], said[1])
+        self.assertGreater(self.counted(), 2)
+        # walls hold the blocks: the mean force only grows, and nothing is to be counted
+        self.events("""&friction law='subloading', alpha_n=1e3, alpha_t=1e3, mu_s=.5, mu_k=.2, kappa=20, xi=5, m=1e4 /
+&slider mass=1, stiffness=1, damping=0.3, normal_traction=1 /
+&drive velocity=-1 /
+&chain n_blocks=3, coupling=4, ends="fixed" /
+&time t_end=20, dt=1e-3, rho_infinity=0.8 /
+""")
+        self.assertEqual(self.counted(), 0)
+
+    def test_noise_of_velocities_in_long_steps_is_no_event(self):
+        text = """&friction law='rate_and_state' alpha_n=1.0e6 alpha_t=1.0e6 a=0.010 b=0.015 d_c=0.010 v0=1.0e-6 f0=0.6 theta_0=1e7 /
+&slider mass=1.0 stiffness=10.0 damping=4.62 normal_traction=100.0 /
+&drive velocity=1.0e-9 /
+&initial mu=0.6 /
+&time t_end=5e6 rtol=1e-6 rho_infinity=0.5 /
+"""
+        self.assertEqual(self.events(text), [])
+
+    def test_a_small_limit_cycle_has_an_event_a_cycle(self):
+        # the force falls by less than 1 %, at slip rates of 0.12 to 99 times the drive's
+        text = (RATE_AND_STATE.replace('=A', '=0.005').replace('=B', '=0.0055').replace('THETA', '12.')
+                .replace('STIFFNESS', '3.0e-5') + '&drive velocity=1.0 / &initial mu=0.75 /'
+                '&time t_end=8000.0 rtol=1e-6 dt_min=1e-7 /')
+        events = self.events(text)
+        self.assertGreater(len(events), 15)
+        last = events[-5:]
+        for event in last:
+            self.assertGreater(event['peak_velocity'], 50)
+            self.assertLess(event['stress_drop'], 0.0098 * 0.75)
+            self.assertAlmostEqual(event['recurrence_time'], last[0]['recurrence_time'], delta=1)
+        # the rows say the same: the slip rate passes 10 once a cycle
+        rates = [float(row['velocity']) for row in self.rows('case_out/case.csv') if float(row['time']) > events[-6]['onset']]
+        crossings = sum(a < 10 <= b for a, b in zip(rates, rates[1:]))
+        self.assertIn(crossings, (6, 7))
+
+    def test_forced_changes_of_stable_sliding_are_no_events(self):
+        hold = (RATE_AND_STATE.replace('=A', '=0.01').replace('=B', '=0.008').replace('THETA', '10.').replace('STIFFNESS', '1e-2')
+                + '&drive velocity=1, 0, 1, 0, 1, 10, 1, duration=100, 10, 100, 100, 100, 100, 100 /'
+                '&initial mu=0.75 / &time t_end=610, rtol=1e-6 /')
+        self.assertEqual(self.events(hold), [])
+        self.assertEqual(self.events(hold.replace('velocity=1, 0, 1, 0, 1, 10, 1', 'velocity=-1, 0, -1, 0, -1, -10, -1')), [])
+        for name in ('oscillating_normal', 'slide_hold_slide', 'slow_steady'):
+            self.assertEqual(self.events((INPUTS / f'{name}.nml').read_text()), [])
+
+    def test_what_counts_as_an_event_is_chosen_by_keys(self):
+        text = BLOCK + '&drive velocity=1 / &time t_end=22, dt=1e-3 / &events '
+        self.assertEqual(len(self.events(text + '/')), 6)
+        self.assertEqual(len(self.events(text + 'drop=0.7 /')), 6)      # 0.75 of the static friction force
+        self.assertEqual(len(self.events(text + 'drop=0.8 /')), 0)
+        self.assertEqual(len(self.events(text + 'slip_rate=46 /')), 6)  # the fastest are 46.8
+        self.assertEqual(len(self.events(text + 'slip_rate=47.5 /')), 0)
+
+    def test_bad_keys_of_events(self):
+        self.refused(namelist({('events', 'drop'): '0', ('events', 'slip_rate'): '-1', ('events', 'fall'): '1'}),
+                     '&events drop = 0: must be > 0', '&events slip_rate = -1: must be > 0', '&events fall: unknown key')
+
+
+if __name__ == '__main__':
+    unittest.main()
