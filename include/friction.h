@@ -99,6 +99,47 @@ int friction_tangential(int ndir, const double *du, double pressure, double dtim
 int friction_rates(int ndir, const double *velocity, int nprops, const double *props, int nstatv, const double *statev,
                    double *rates);
 
+/* What is to be known about the laws, for those who read constants, describe them, or check them. Laws are numbered
+ * from 1 to friction_law_count(). */
+int friction_law_count(void);
+
+typedef struct {
+    char name[24];           /* as in the program's input: "subloading", ... */
+    char internal[16];       /* name of the internal variable, statev[5]; "R" for laws without one */
+    char internal_unit[8];
+    int has_internal;        /* 0: the law has none, and statev[5] is 0 */
+    int constants;           /* how many numbers props can have, options and the law's number included */
+} friction_law_facts;
+
+/* The facts of a law. Returns FRICTION_OK or FRICTION_BAD_LAW. */
+int friction_get_law(int law, friction_law_facts *facts);
+
+typedef struct {
+    char name[24];           /* "law", "alpha_n", "alpha_t", "mu_s", ... */
+    char unit[8];            /* in force F, length L, time T: "F/L^3", "T/L", "-", ... */
+    char meaning[72];        /* in words */
+    char rule[104];          /* in words: "must be >= mu_k", ... */
+    char default_text[24];   /* in words: "0", "mu_s", "d_c/v0"; "" where there is none */
+    char words[72];          /* of a choice: those that stand for 0, 1, ... in the program's input */
+    double lower, upper;     /* range; where a constant has to be > 0, `lower` is the least normal number; the rule may
+                              * ask for more */
+    int optional;            /* 1: it may be left out, with all that follow it */
+    int choice;              /* 1: a whole number, one of the words */
+} friction_constant_facts;
+
+/* The facts of the constant props[place] of a law, place = 0 to constants - 1.
+ * Returns FRICTION_OK, FRICTION_BAD_LAW, or FRICTION_BAD_SIZE for a place that does not exist. */
+int friction_get_constant(int law, int place, friction_constant_facts *facts);
+
+/* The default of the constant props[place], which may follow from those before it: props holds nprops numbers, as many as
+ * are known. Returns FRICTION_OK, or FRICTION_BAD_PROPERTY where there is none. */
+int friction_get_default(int nprops, const double *props, int place, double *value);
+
+/* Do the constants obey the rules of their law? The text, of at most length - 1 characters, says which one breaks which
+ * rule ("m must be > 0"); "" if none does. 96 characters are room for every text; with length = 0, text may be NULL.
+ * Returns FRICTION_OK, or what an update with these constants returns. */
+int friction_check(int nprops, const double *props, int length, char *text);
+
 /* What a status says, in one line; the text is constant and not to be freed. */
 const char *friction_message(int status);
 

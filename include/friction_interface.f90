@@ -10,6 +10,8 @@ module friction_interface
 
     public :: friction_update, friction_update_batch, friction_update_points, friction_tangential, &
         friction_rates, friction_slip_rates, friction_message, friction_version, friction_text
+    public :: friction_law_count, friction_get_law, friction_get_constant, friction_get_default, &
+        friction_check, friction_law_facts, friction_constant_facts
 
     integer(c_int), parameter, public :: friction_ok = 0
     integer(c_int), parameter, public :: friction_snap_back = 1
@@ -24,6 +26,20 @@ module friction_interface
     integer(c_int), parameter, public :: friction_zero_time_increment = -9
     integer(c_int), parameter, public :: friction_bad_axis = -10
     integer(c_int), parameter, public :: friction_no_rate = -11
+
+    !> What is to be known about a law; texts end with a null character.
+    type, bind(C) :: friction_law_facts
+        character(kind=c_char) :: name(24), internal(16), internal_unit(8)
+        integer(c_int) :: has_internal, constants
+    end type friction_law_facts
+
+    !> What is to be known about a constant.
+    type, bind(C) :: friction_constant_facts
+        character(kind=c_char) :: name(24), unit(8), meaning(72), rule(104), default_text(24), &
+            words(72)
+        real(c_double) :: lower, upper
+        integer(c_int) :: optional, choice
+    end type friction_constant_facts
 
     interface
         !> One contact point.
@@ -139,6 +155,57 @@ module friction_interface
             integer(c_int), value, intent(in) :: status
             type(c_ptr) :: text
         end function friction_message
+
+        !> Laws are numbered from 1 to this.
+        function friction_law_count() result(count) bind(C, name='friction_law_count')
+            import :: c_int
+            implicit none
+            integer(c_int) :: count
+        end function friction_law_count
+
+        !> The facts of a law.
+        function friction_get_law(law, facts) result(status) bind(C, name='friction_get_law')
+            import :: c_int, friction_law_facts
+            implicit none
+            integer(c_int), value, intent(in) :: law
+            type(friction_law_facts), intent(inout) :: facts
+            integer(c_int) :: status
+        end function friction_get_law
+
+        !> The facts of a constant.
+        function friction_get_constant(law, place, facts) result(status) &
+            bind(C, name='friction_get_constant')
+            import :: c_int, friction_constant_facts
+            implicit none
+            integer(c_int), value, intent(in) :: law
+            integer(c_int), value, intent(in) :: place   !! in props, counted from 0
+            type(friction_constant_facts), intent(inout) :: facts
+            integer(c_int) :: status
+        end function friction_get_constant
+
+        !> The default of a constant, by those before it.
+        function friction_get_default(nprops, props, place, default) result(status) &
+            bind(C, name='friction_get_default')
+            import :: c_double, c_int
+            implicit none
+            integer(c_int), value, intent(in) :: nprops   !! how many are known
+            real(c_double), intent(in) :: props(nprops)
+            integer(c_int), value, intent(in) :: place    !! in props, counted from 0
+            real(c_double), intent(inout) :: default
+            integer(c_int) :: status
+        end function friction_get_default
+
+        !> Which constant breaks which rule.
+        function friction_check(nprops, props, length, text) result(status) &
+            bind(C, name='friction_check')
+            import :: c_char, c_double, c_int
+            implicit none
+            integer(c_int), value, intent(in) :: nprops
+            real(c_double), intent(in) :: props(nprops)
+            integer(c_int), value, intent(in) :: length
+            character(kind=c_char), intent(inout) :: text(length)   !! ended by a null character
+            integer(c_int) :: status
+        end function friction_check
 
         !> Version of the library, as a C string.
         function friction_version() result(text) bind(C, name='friction_version')

@@ -9,8 +9,8 @@ submodule(friction_mod) friction_advance
         point_open, point_slip, point_stick, point_virgin
     use friction_continuous, only : contact_rates, point_rates
     use friction_law, only : law
-    use friction_law_choice, only : choose_law, first_own_prop, law_storage, orthotropy_place, &
-        prop_alpha_n, prop_alpha_t, prop_law, whole_number
+    use friction_law_choice, only : choose_law, first_own_prop, law_storage, prop_alpha_n, &
+        prop_alpha_t
     implicit none
 
 contains
@@ -110,16 +110,16 @@ contains
     end subroutine turn_to
 
     module procedure friction_is_orthotropic
-        integer :: place
-        real(wp) :: ratio
+        type(law_storage), target :: storage
+        class(law), pointer :: surface
+        type(orthotropy) :: plane
+        integer :: status
 
         orthotropic = .false.
         if (size(props) < first_own_prop) return
         if (.not. all_usable(size(props), props)) return
-        place = orthotropy_place(whole_number(props(prop_law)))
-        if (size(props) < place) return
-        ratio = props(place)
-        orthotropic = ratio > 0.0_wp .and. abs(ratio - 1.0_wp) > 0.0_wp
+        call choose_law(size(props), props, storage, surface, plane, status)
+        if (status == friction_ok) orthotropic = abs(plane%squeeze - 1.0_wp) > 0.0_wp
     end procedure friction_is_orthotropic
 
     module procedure friction_tangential
@@ -208,7 +208,6 @@ contains
         if (motion%dt < 0.0_wp) return
         status = friction_bad_property
         if (.not. all_usable(sizes%nprops, props)) return
-        if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
         call choose_law(sizes%nprops, props, storage, chosen, plane, status)
         if (status < 0) return
         surface => chosen   ! part by part: a copy of the whole would wait as above

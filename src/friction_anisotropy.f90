@@ -11,14 +11,27 @@
 module friction_anisotropy
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, sliding
+    use friction_law_constants, only : complete_constants, law_constant
     use friction_return_map, only : return_along, unloaded, unloading
-    use friction_status, only : friction_bad_property, friction_ok
+    use friction_status, only : friction_ok
     implicit none
     private
 
     public :: orthotropy, isotropic, read_orthotropy, slide_associated, sliding_way
 
     real(wp), parameter, public :: largest_mu_ratio = 1.0e3_wp   !! of the two coefficients [-]
+
+    !> Direction in which an orthotropic surface slides: values of the constant `direction`.
+    integer, parameter, public :: direction_associated = 0   !! normal to the surface of strength
+    integer, parameter, public :: direction_radial = 1       !! along the trial traction
+
+    !> The constants that every law takes after its shear cap.
+    type(law_constant), parameter, public :: orthotropy_constants(2) = [ &
+        law_constant('mu_ratio', '-', 'friction coefficient along axis 2 over that along axis 1', &
+        lower=1.0_wp / largest_mu_ratio, upper=largest_mu_ratio, or_zero=.true., optional=.true., &
+        default=1.0_wp), &
+        law_constant('direction', '-', 'direction of slip', lower=0.0_wp, upper=1.0_wp, &
+        optional=.true., whole=.true., words='associated radial')]
 
     !> How friction depends on the direction.
     type :: orthotropy
@@ -67,26 +80,20 @@ module friction_anisotropy
 
 contains
 
-    !> From the constants mu_2/mu_1 (0 stands for 1) and, if given, the direction of sliding.
+    !> From the constants `mu_ratio` and `direction`.
     pure subroutine read_orthotropy(n, constants, plane, status)
-        integer, intent(in) :: n                   !! number of constants, 1 or more
+        integer, intent(in) :: n                   !! how many are given; none: isotropic
         real(wp), intent(in) :: constants(n)       !! finite
         type(orthotropy), intent(out) :: plane     !! if the status is ok
         integer, intent(out) :: status             !! ok or bad property
-        real(wp) :: ratio, direction
+        real(wp) :: c(size(orthotropy_constants))
 
+        call complete_constants(0, orthotropy_constants, n, constants, c, status)
+        if (status /= friction_ok) return
         plane = isotropic
-        ratio = constants(1)
-        direction = 0.0_wp
-        if (n > 1) direction = constants(2)
-        status = friction_bad_property
-        if (abs(direction) > 0.0_wp .and. abs(direction - 1.0_wp) > 0.0_wp) return
-        if (abs(ratio) > 0.0_wp) then
-            if (ratio < 1.0_wp / largest_mu_ratio .or. ratio > largest_mu_ratio) return
-            plane%squeeze = 1.0_wp / ratio
-            plane%associated = abs(ratio - 1.0_wp) > 0.0_wp .and. .not. direction > 0.0_wp
-        end if
-        status = friction_ok
+        if (.not. c(1) > 0.0_wp) return
+        plane%squeeze = 1.0_wp / c(1)
+        plane%associated = abs(c(1) - 1.0_wp) > 0.0_wp .and. int(c(2)) == direction_associated
     end subroutine read_orthotropy
 
     !> Along the normal of the ellipse through the traction at the end.

@@ -6,7 +6,10 @@
 !> on the number of threads.
 submodule(friction_mod) friction_batch
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_intptr_t, c_loc
-    use friction_law_choice, only : prop_law, prop_scheme, prop_tau_max
+    use friction_anisotropy, only : orthotropy
+    use friction_law, only : law
+    use friction_law_choice, only : choose_law, law_storage, prop_alpha_n, prop_alpha_t
+    use friction_subloading_law, only : subloading_law
     use friction_threads, only : worth_threads
     implicit none
 
@@ -112,20 +115,25 @@ contains
         real(wp), intent(in) :: props(this%nprops)
         real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
         real(wp) :: statev(statev_size), traction(3), tangent(3, 3)
-        integer :: status, last_option
+        type(law_storage), target :: storage
+        class(law), pointer :: surface
+        type(orthotropy) :: plane
+        integer :: status
 
-        if (this%nstatv < statev_size .or. this%nprops < 8) return
+        if (this%nstatv < statev_size) return
         statev = 0.0_wp
         call update_arrays(array_sizes(1, 3, this%nprops, statev_size), &
             [0.0_wp, 0.0_wp, 0.0_wp], this%dtime, props, statev, traction, tangent, status)
         if (status < 0) return   ! point by point, they all say so
-        if (abs(props(prop_law) - law_subloading) > 0.0_wp) return
-        last_option = min(this%nprops, prop_tau_max(law_subloading))
-        if (any(abs(props(prop_scheme:last_option)) > 0.0_wp)) return
-        if (friction_is_orthotropic(props)) return
-        this%constants(1:7) = props(2:8)
-        this%constants(8) = props(4)
-        if (this%nprops > 8) this%constants(8) = props(9)
+        call choose_law(this%nprops, props, storage, surface, plane, status)
+        if (abs(plane%squeeze - 1.0_wp) > 0.0_wp) return
+        select type (surface)
+        type is (subloading_law)
+            this%constants = [props(prop_alpha_n), props(prop_alpha_t), surface%mu_s, &
+                surface%mu_k, surface%kappa, surface%xi, surface%m, surface%mu_0]
+        class default
+            return
+        end select
         this%vectors = this%dtime < most .and. all(this%constants < most &
             .and. (this%constants > least .or. this%constants <= 0.0_wp))
     end subroutine prepare_kernel

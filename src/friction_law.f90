@@ -5,12 +5,16 @@
 !> `slip` during `dt` under `pressure`: which traction does it carry (`slide`)? The return mapping
 !> (module `friction_return_map`) knows no law by name; adding a law means adding one file in
 !> src/laws/ and one line where laws are chosen.
+!>
+!> A `named_law` also tells what is to be known about it: its name, its constants, and what they
+!> mean to those who choose steps and tolerances.
 module friction_law
     use friction_kinds, only : wp
+    use friction_law_constants, only : constant_table, name_length, unit_length
     implicit none
     private
 
-    public :: below, law, law_state, law_traits, load_rates, sliding
+    public :: below, internal_variable, law, law_state, law_traits, load_rates, named_law, sliding
 
     !> A slope of which nothing better is known: its products with slips stay in range.
     real(wp), parameter, public :: unbounded = 2.0_wp**660   !! [F/L^3]
@@ -83,7 +87,60 @@ module friction_law
         procedure :: start_rate => no_start_rate
     end type law
 
+    !> What the internal variable `r` of a law is called.
+    type :: internal_variable
+        character(len=name_length) :: name   !! 'R' for a law without one
+        character(len=unit_length) :: unit
+        logical :: exists                    !! otherwise `r` is 0
+    end type internal_variable
+
+    type, abstract, extends(law) :: named_law
+    contains
+        procedure(read_interface), deferred :: read
+        procedure(name_interface), nopass, deferred :: name
+        procedure(constants_interface), nopass, deferred :: constants
+        procedure, nopass :: internal => no_internal_variable
+        procedure(coefficient_interface), deferred :: typical_coefficient
+        procedure :: largest_coefficient => typical_is_largest
+        procedure :: kinetic_coefficient => typical_is_kinetic
+        procedure :: healing_rate => never_heals
+        procedure :: order => first_order
+    end type named_law
+
     abstract interface
+        !> Takes the law's own constants, which it checks by its table of them.
+        pure subroutine read_interface(self, n, constants, n_own, status)
+            import :: named_law, wp
+            implicit none
+            class(named_law), intent(inout) :: self
+            integer, intent(in) :: n               !! how many are given, those of options included
+            real(wp), intent(in) :: constants(n)   !! finite
+            integer, intent(out) :: n_own          !! how many of them, at most, are the law's own
+            integer, intent(out) :: status         !! ok, bad size, or bad property
+        end subroutine read_interface
+
+        !> The name of the law, as in the program's input.
+        pure function name_interface() result(name)
+            import :: name_length
+            implicit none
+            character(len=name_length) :: name
+        end function name_interface
+
+        !> Its own constants, in the order of `props`.
+        pure function constants_interface() result(table)
+            import :: constant_table
+            implicit none
+            type(constant_table) :: table
+        end function constants_interface
+
+        !> A friction coefficient that characterises the law.
+        pure function coefficient_interface(self) result(mu)
+            import :: named_law, wp
+            implicit none
+            class(named_law), intent(in) :: self
+            real(wp) :: mu   !! [-]
+        end function coefficient_interface
+
         !> Internal variables of a point that no load has touched.
         pure function virgin_interface(self) result(state)
             import :: law, law_state
@@ -261,5 +318,45 @@ contains
 
         rate = 0.0_wp
     end function no_start_rate
+
+    pure function no_internal_variable() result(variable)
+        type(internal_variable) :: variable
+
+        variable = internal_variable(name='R', unit='-', exists=.false.)
+    end function no_internal_variable
+
+    !> The most that friction can be while the surface rests; huge where there is no such bound.
+    pure function typical_is_largest(self) result(mu)
+        class(named_law), intent(in) :: self
+        real(wp) :: mu   !! [-]
+
+        mu = self%typical_coefficient()
+    end function typical_is_largest
+
+    !> The friction coefficient that is left when the surface has slid far, where that is a constant
+    !> of the law; else the typical one.
+    pure function typical_is_kinetic(self) result(mu)
+        class(named_law), intent(in) :: self
+        real(wp) :: mu   !! [-]
+
+        mu = self%typical_coefficient()
+    end function typical_is_kinetic
+
+    !> How fast the friction coefficient in the state grows while the surface rests.
+    pure function never_heals(self, state) result(rate)
+        class(named_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp) :: rate   !! [1/T]
+
+        rate = 0.0_wp
+    end function never_heals
+
+    !> Order of accuracy, in the length of an increment in which the slip rate varies.
+    pure function first_order(self) result(order)
+        class(named_law), intent(in) :: self
+        integer :: order
+
+        order = 1
+    end function first_order
 
 end module friction_law

@@ -1,22 +1,23 @@
-!> Which law, from the constants in `props`: the one place where laws are chosen.
+!> Which law, from the constants in `props`: the one place where laws are chosen, and the one table
+!> of where constants stand.
 module friction_law_choice
-    use friction_anisotropy, only : isotropic, orthotropy, read_orthotropy
-    use friction_coulomb_law, only : coulomb_law, read_coulomb_law
+    use friction_anisotropy, only : isotropic, orthotropy, orthotropy_constants, read_orthotropy
+    use friction_coulomb_law, only : coulomb_law
     use friction_kinds, only : wp
-    use friction_law, only : law
-    use friction_rate_state_law, only : rate_state_law, read_rate_state_law
-    use friction_shear_cap, only : capped_law
-    use friction_slip_weakening_law, only : read_slip_weakening_law, slip_weakening_law
-    use friction_static_kinetic_law, only : read_static_kinetic_law, static_kinetic_law
+    use friction_law, only : law, named_law
+    use friction_law_constants, only : law_constant, positive
+    use friction_rate_state_law, only : rate_state_law
+    use friction_shear_cap, only : cap_constants, capped_law
+    use friction_slip_weakening_law, only : slip_weakening_law
+    use friction_static_kinetic_law, only : static_kinetic_law
     use friction_status, only : friction_bad_law, friction_bad_property
     use friction_subloading_exact_law, only : subloading_exact_law
-    use friction_subloading_general_law, only : subloading_general_law, u_cotangent, u_logarithm, &
-        u_reciprocal
-    use friction_subloading_law, only : read_subloading_law, subloading_law
+    use friction_subloading_general_law, only : subloading_general_law
+    use friction_subloading_law, only : scheme_exact_rate, subloading_law, u_logarithm
     implicit none
     private
 
-    public :: choose_law, law_storage, orthotropy_place, whole_number
+    public :: choose_law, choose_own_law, find_law, law_storage, whole_number
 
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
@@ -24,26 +25,17 @@ module friction_law_choice
     integer, parameter, public :: law_static_kinetic = 3
     integer, parameter, public :: law_rate_state = 4
     integer, parameter, public :: law_slip_weakening = 5
+    integer, parameter, public :: law_count = 5   !! they are numbered from 1 to this
 
-    !> Time integration of the subloading law: values of props(10).
-    integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
-    integer, parameter, public :: scheme_exact_rate = 1       !! exact for a constant slip rate
-
-    !> Evolution of R in the subloading law: values of props(11).
-    public :: u_logarithm, u_cotangent, u_reciprocal
-
-    !> Material constants: places in `props` that all laws share.
+    !> Material constants: places in `props`. The law's own ones follow, then the shear cap, then
+    !> those of orthotropic friction.
     integer, parameter, public :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3
-    integer, parameter, public :: first_own_prop = 4   !! of each law
-    integer, parameter, public :: prop_scheme = 10   !! of the subloading law; may be left out
-    integer, parameter, public :: prop_u_of_r = 11   !! likewise
+    integer, parameter, public :: first_own_prop = 4
 
-    !> Place of the shear cap, after the own constants of each law; may be left out, 0 means none.
-    integer, parameter, public :: prop_tau_max(5) = [12, 5, 7, 11, 7]
-
-    !> The places after it, which may be left out, are for orthotropic friction: mu_2/mu_1, and the
-    !> direction of sliding.
-    integer, parameter :: ratio_after_tau_max = 1
+    !> Of the springs of the contact, which stand before the law's own.
+    type(law_constant), parameter, public :: spring_constants(2) = [ &
+        law_constant('alpha_n', 'F/L^3', 'normal contact stiffness', lower=positive), &
+        law_constant('alpha_t', 'F/L^3', 'tangential contact stiffness', lower=positive)]
 
     !> Room for a law of whichever kind, of which one is in use.
     type :: law_storage
@@ -59,105 +51,90 @@ module friction_law_choice
 
 contains
 
+    !> A law by its number, without constants as yet; null if there is none.
+    pure subroutine find_law(number, storage, found)
+        integer, intent(in) :: number
+        type(law_storage), intent(inout), target :: storage
+        class(named_law), pointer, intent(inout) :: found
+
+        select case (number)
+        case (law_subloading); found => storage%subloading
+        case (law_coulomb); found => storage%coulomb
+        case (law_static_kinetic); found => storage%static_kinetic
+        case (law_rate_state); found => storage%rate_state
+        case (law_slip_weakening); found => storage%slip_weakening
+        case default; found => null()
+        end select
+    end subroutine find_law
+
     !> The law and its options from the constants.
     pure subroutine choose_law(nprops, props, storage, surface, plane, status)
-        integer, intent(in) :: nprops                        !! size, 4 or more
+        integer, intent(in) :: nprops                        !! size
         real(wp), intent(in) :: props(nprops)                !! finite
         type(law_storage), intent(inout), target :: storage  !! where the law is kept
         class(law), pointer, intent(inout) :: surface        !! out: the law, if the status is ok
         type(orthotropy), intent(out) :: plane               !! how it depends on the direction
         integer, intent(out) :: status   !! ok, bad law, bad size, or bad property
-        integer :: number, n, scheme, place
+        class(named_law), pointer :: own
+        integer :: place
 
-        number = whole_number(props(prop_law))
-        n = nprops - first_own_prop + 1
-        scheme = scheme_backward_euler
-        select case (number)
-        case (law_subloading)
-            call choose_subloading(nprops, props, storage, surface, scheme, status)
-        case (law_coulomb)
-            call read_coulomb_law(n, props(first_own_prop), storage%coulomb, status)
-            surface => storage%coulomb
-        case (law_static_kinetic)
-            call read_static_kinetic_law(n, props(first_own_prop), storage%static_kinetic, status)
-            surface => storage%static_kinetic
-        case (law_rate_state)
-            call read_rate_state_law(n, props(first_own_prop), storage%rate_state, status)
-            surface => storage%rate_state
-        case (law_slip_weakening)
-            call read_slip_weakening_law(n, props(first_own_prop), storage%slip_weakening, status)
-            surface => storage%slip_weakening
-        case default
-            status = friction_bad_law
-        end select
+        call choose_own_law(nprops, props, storage, own, place, status)
         if (status < 0) return
-        surface%follows_path = scheme == scheme_exact_rate
-        surface%tau_max = huge(surface%tau_max)
-        if (nprops >= prop_tau_max(number)) then
-            call cap_law(props(prop_tau_max(number)), storage%capped, surface, status)
-            if (status < 0) return
-        end if
+        surface => own
         plane = isotropic
-        place = orthotropy_place(number)
-        if (nprops >= place) call read_orthotropy(nprops - place + 1, props(place), plane, status)
+        if (nprops < place) return
+        if (props(place) < cap_constants(1)%lower) then
+            status = friction_bad_property
+        else if (props(place) > 0.0_wp) then
+            storage%capped%tau_max = props(place)
+            storage%capped%inner => own
+            storage%capped%follows_path = .false.   ! not proportional to the pressure
+            surface => storage%capped
+        end if
+        place = place + size(cap_constants)
+        if (status < 0 .or. nprops < place) return
+        call read_orthotropy(nprops - place + 1, props(place:), plane, status)
     end subroutine choose_law
 
+    !> The law as it is without options.
+    pure subroutine choose_own_law(nprops, props, storage, own, place, status)
+        integer, intent(in) :: nprops                        !! size
+        real(wp), intent(in) :: props(nprops)                !! finite
+        type(law_storage), intent(inout), target :: storage  !! where the law is kept
+        class(named_law), pointer, intent(inout) :: own      !! out: the law, if the status is ok
+        integer, intent(out) :: place    !! of the first option in `props`
+        integer, intent(out) :: status   !! ok, bad law, bad size, or bad property
+        integer :: number, n_own
+
+        status = friction_bad_property
+        if (props(prop_alpha_n) < spring_constants(1)%lower) return
+        if (props(prop_alpha_t) < spring_constants(2)%lower) return
+        number = whole_number(props(prop_law))
+        call find_law(number, storage, own)
+        status = friction_bad_law
+        if (.not. associated(own)) return
+        call own%read(nprops - first_own_prop + 1, props(first_own_prop:), n_own, status)
+        if (status < 0) return
+        place = first_own_prop + n_own
+        own%follows_path = .false.
+        own%tau_max = huge(own%tau_max)
+        if (number == law_subloading) call choose_form(storage, own)
+    end subroutine choose_own_law
+
     !> The subloading law in one of its forms.
-    pure subroutine choose_subloading(nprops, props, storage, surface, scheme, status)
-        integer, intent(in) :: nprops
-        real(wp), intent(in) :: props(nprops)
+    pure subroutine choose_form(storage, own)
         type(law_storage), intent(inout), target :: storage
-        class(law), pointer, intent(inout) :: surface
-        integer, intent(out) :: scheme   !! of time integration
-        integer, intent(out) :: status   !! ok, bad size, or bad property
-        integer :: u_of_r
+        class(named_law), pointer, intent(inout) :: own
 
-        call read_subloading_law(nprops - first_own_prop + 1, props(first_own_prop), &
-            storage%subloading, status)
-        surface => storage%subloading
-        scheme = scheme_backward_euler
-        if (nprops < prop_scheme) return
-        scheme = whole_number(props(prop_scheme))
-        u_of_r = u_logarithm
-        if (nprops >= prop_u_of_r) u_of_r = whole_number(props(prop_u_of_r))
-        if (u_of_r /= u_logarithm) then
-            storage%general%subloading_law = storage%subloading
-            storage%general%u_of_r = u_of_r
-            surface => storage%general
-            if (scheme /= scheme_backward_euler .or. (u_of_r /= u_cotangent &
-                .and. u_of_r /= u_reciprocal)) status = friction_bad_property
-        else if (scheme == scheme_exact_rate) then
+        if (storage%subloading%scheme == scheme_exact_rate) then
             storage%exact%subloading_law = storage%subloading
-            surface => storage%exact
-        else if (scheme /= scheme_backward_euler) then
-            status = friction_bad_property
+            storage%exact%follows_path = .true.
+            own => storage%exact
+        else if (storage%subloading%u_of_r /= u_logarithm) then
+            storage%general%subloading_law = storage%subloading
+            own => storage%general
         end if
-    end subroutine choose_subloading
-
-    !> Puts a shear cap on a law; 0 means none.
-    pure subroutine cap_law(tau_max, capped, surface, status)
-        real(wp), intent(in) :: tau_max
-        type(capped_law), intent(inout), target :: capped
-        class(law), pointer, intent(inout) :: surface
-        integer, intent(inout) :: status   !! bad property, or as it was
-
-        if (tau_max < 0.0_wp) status = friction_bad_property
-        if (.not. tau_max > 0.0_wp) return
-        capped%tau_max = tau_max
-        capped%inner => surface
-        capped%follows_path = .false.   ! its strength is not proportional to the pressure
-        surface => capped
-    end subroutine cap_law
-
-    !> Place of mu_2/mu_1 in the constants of a law; the direction of sliding follows it.
-    pure function orthotropy_place(number) result(place)
-        integer, intent(in) :: number   !! of the law
-        integer :: place                !! huge for a law that does not exist
-
-        place = huge(place)
-        if (number >= 1 .and. number <= size(prop_tau_max)) place = prop_tau_max(number) &
-            + ratio_after_tau_max
-    end function orthotropy_place
+    end subroutine choose_form
 
     !> A number that counts something; -1, which counts nothing, for all but a small whole number.
     pure function whole_number(x) result(number)

@@ -9,15 +9,21 @@
 !> friction_points and friction_slip_rate.
 module friction_mod
     use, intrinsic :: iso_fortran_env, only : int64
-    use friction_anisotropy, only : largest_mu_ratio
+    use friction_anisotropy, only : direction_associated, direction_radial, largest_mu_ratio
     use friction_kinds, only : wp
     use friction_law_choice, only : law_coulomb, law_rate_state, law_slip_weakening, &
-        law_static_kinetic, law_subloading, scheme_backward_euler, scheme_exact_rate, &
-        u_cotangent, u_logarithm, u_reciprocal
+        law_static_kinetic, law_subloading
+    use friction_law_facts, only : constant_table, friction_check, friction_coefficient_change, &
+        friction_constants, friction_default, friction_facts, friction_healing_rate, &
+        friction_internal_variable, friction_law_count, friction_law_name, friction_law_number, &
+        friction_law_of, friction_place, internal_variable, law_constant, law_facts, rule_text, &
+        text_length, word_of
     use friction_status, only : friction_bad_axis, friction_bad_increment, friction_bad_law, &
         friction_bad_normal, friction_bad_property, friction_bad_size, friction_bad_state, &
         friction_message, friction_no_convergence, friction_null_pointer, friction_ok, &
         friction_no_rate, friction_snap_back, friction_zero_time_increment
+    use friction_subloading_law, only : scheme_backward_euler, scheme_exact_rate, u_cotangent, &
+        u_logarithm, u_reciprocal
     use friction_surface, only : law_state, law_traits, load_rates, onset_drops, onset_gradual, &
         onset_yields, read_surface, sliding_surface
     implicit none
@@ -36,16 +42,17 @@ module friction_mod
     ! a law for those who integrate its rates themselves
     public :: law_state, law_traits, load_rates, read_surface, sliding_surface
     public :: onset_drops, onset_gradual, onset_yields
+    ! what is to be known about the laws: module friction_law_facts
+    public :: friction_check, friction_coefficient_change, friction_constants, friction_default, &
+        friction_facts, friction_healing_rate, friction_internal_variable, friction_law_count, &
+        friction_law_name, friction_law_number, friction_law_of, friction_place, &
+        constant_table, internal_variable, law_constant, law_facts, rule_text, text_length, word_of
     public :: law_coulomb, law_rate_state, law_slip_weakening, law_static_kinetic, law_subloading
     public :: scheme_backward_euler, scheme_exact_rate
     public :: u_cotangent, u_logarithm, u_reciprocal
-    public :: largest_mu_ratio
+    public :: direction_associated, direction_radial, largest_mu_ratio
 
     character(len=*), parameter :: friction_version = '0.1.0'   !! semantic version of the library
-
-    !> Direction in which an orthotropic surface slides.
-    integer, parameter, public :: direction_associated = 0   !! normal to the surface of strength
-    integer, parameter, public :: direction_radial = 1       !! along the trial traction
 
     !> Places in `statev`.
     integer, parameter, public :: statev_size = 8          !! least size

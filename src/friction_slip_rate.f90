@@ -6,19 +6,19 @@
 !> on its neighbours nor on the number of threads.
 submodule(friction_mod) friction_slip_rate
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
-    use friction_law_choice, only : first_own_prop, prop_law, prop_tau_max, whole_number
+    use friction_law_choice, only : first_own_prop, prop_law, whole_number
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
-    use friction_rate_state_law, only : ageing, rate_state_law, read_rate_state_law, slipping
+    use friction_rate_state_law, only : ageing, n_constants, n_needed, rate_state_law, slipping
     use friction_threads, only : worth_threads
     implicit none
 
     integer, parameter :: lanes = 128         !! points of the kernel's block
-    integer, parameter :: own_constants = 5   !! of the law: a, b, d_c, v0, f0
+    integer, parameter :: own_constants = n_needed   !! of the law: a, b, d_c, v0, f0
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
     integer, parameter :: least_props = first_own_prop + own_constants - 1
     integer, parameter :: prop_evolution = least_props + 1          !! may be left out
-    integer, parameter :: prop_cap = prop_tau_max(law_rate_state)   !! likewise
+    integer, parameter :: prop_cap = first_own_prop + n_constants   !! likewise
     real(wp), parameter :: standstill = -700.0_wp      !! ln of what counts as no slip rate
     real(wp), parameter :: ln_most_rate = 300.0_wp     !! ln of the largest slip rate told
     real(wp), parameter :: least_scale = 1.0e-200_wp   !! of a p, so that quotients are in range
@@ -209,6 +209,7 @@ contains
         integer, intent(out) :: status
         type(rate_state_law) :: surface
         real(wp) :: cap, ln_v, ln_w
+        integer :: n_own
 
         status = friction_bad_increment
         if (.not. are_usable([tau, pressure, damping])) return
@@ -217,8 +218,7 @@ contains
         if (.not. are_usable(props)) return
         status = friction_bad_law
         if (whole_number(props(prop_law)) /= law_rate_state) return
-        call read_rate_state_law(size(props) - first_own_prop + 1, props(first_own_prop:), &
-            surface, status)
+        call surface%read(size(props) - first_own_prop + 1, props(first_own_prop:), n_own, status)
         if (status < 0) return
         cap = 0.0_wp
         if (size(props) >= prop_cap) cap = props(prop_cap)

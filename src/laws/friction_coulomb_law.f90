@@ -5,16 +5,21 @@
 !> Nothing evolves; the internal variable stays 0.
 module friction_coulomb_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law, law_state, load_rates
+    use friction_law, only : below, law_state, load_rates, named_law
+    use friction_law_constants, only : constant_table, law_constant, name_length
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
 
-    public :: coulomb_law, read_coulomb_law
+    public :: coulomb_law
 
-    type, extends(law) :: coulomb_law
+    type, extends(named_law) :: coulomb_law
         real(wp) :: mu   !! friction coefficient, >= 0 [-]
     contains
+        procedure :: read => read_constants
+        procedure, nopass :: name
+        procedure, nopass :: constants
+        procedure :: typical_coefficient
         procedure :: virgin
         procedure :: admits
         procedure :: rest
@@ -23,22 +28,46 @@ module friction_coulomb_law
         procedure :: state_rates
     end type coulomb_law
 
+    !> Its own constants; in `props` they stand from place 4 on.
+    type(law_constant), parameter :: table(1) = [ &
+        law_constant('mu', '-', 'friction coefficient', lower=0.0_wp)]
+
 contains
 
-    !> The law from its constant `mu`.
-    pure subroutine read_coulomb_law(n, constants, surface, status)
-        integer, intent(in) :: n                     !! number of constants, 1 or more
-        real(wp), intent(in) :: constants(n)         !! finite
-        type(coulomb_law), intent(out) :: surface    !! the law, if the status is ok
-        integer, intent(out) :: status               !! ok, bad size, or bad property
+    pure subroutine read_constants(self, n, constants, n_own, status)
+        class(coulomb_law), intent(inout) :: self
+        integer, intent(in) :: n
+        real(wp), intent(in) :: constants(n)
+        integer, intent(out) :: n_own, status
 
+        n_own = size(table)
         status = friction_bad_size
         if (n < 1) return
-        surface%mu = constants(1)
         status = friction_bad_property
-        if (surface%mu < 0.0_wp) return
+        if (any(constants(:1) < table(:1)%lower)) return
+        self%mu = constants(1)
         status = friction_ok
-    end subroutine read_coulomb_law
+    end subroutine read_constants
+
+    pure function name()
+        character(len=name_length) :: name
+
+        name = 'coulomb'
+    end function name
+
+    pure function constants()
+        type(constant_table) :: constants
+
+        constants%n = size(table)
+        constants%of(:size(table)) = table
+    end function constants
+
+    pure function typical_coefficient(self) result(mu)
+        class(coulomb_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = self%mu
+    end function typical_coefficient
 
     pure function virgin(self) result(state)
         class(coulomb_law), intent(in) :: self

@@ -17,19 +17,21 @@
 !> taken as proportional to the slip, so that it starts from zero and every number stays in range.
 module friction_rate_state_law
     use friction_kinds, only : largest, wp
-    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding, &
-        unbounded
+    use friction_law, only : internal_variable, law_state, law_traits, load_rates, named_law, &
+        onset_gradual, sliding, unbounded
+    use friction_law_constants, only : complete_constants, constant_table, law_constant, &
+        name_length, positive
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
 
-    public :: rate_state_law, read_rate_state_law
+    public :: rate_state_law
 
     integer, parameter, public :: ageing = 0, slipping = 1   !! values of the constant `evolution`
 
-    type, extends(law) :: rate_state_law
+    type, extends(named_law) :: rate_state_law
         real(wp) :: a         !! direct effect, > 0 [-]
         real(wp) :: b         !! evolution effect, >= 0 [-]
         real(wp) :: d_c       !! slip over which the state evolves, > 0 [L]
@@ -38,6 +40,12 @@ module friction_rate_state_law
         integer :: evolution  !! how theta evolves: one of the two above
         real(wp) :: theta_0   !! theta of a virgin point, > 0 [T]
     contains
+        procedure :: read => read_constants
+        procedure, nopass :: name
+        procedure, nopass :: constants
+        procedure, nopass :: internal
+        procedure :: typical_coefficient
+        procedure :: largest_coefficient
         procedure :: virgin
         procedure :: admits
         procedure :: rest
@@ -51,41 +59,82 @@ module friction_rate_state_law
         procedure :: solve
     end type rate_state_law
 
+    !> Its own constants; in `props` they stand from place 4 on.
+    type(law_constant), parameter :: table(7) = [ &
+        law_constant('a', '-', 'direct effect', lower=positive), &
+        law_constant('b', '-', 'evolution effect', lower=0.0_wp), &
+        law_constant('d_c', 'L', 'slip over which the state evolves', lower=positive), &
+        law_constant('v0', 'L/T', 'reference slip rate', lower=positive), &
+        law_constant('f0', '-', 'friction coefficient of steady sliding at v0', lower=0.0_wp), &
+        law_constant('evolution', '-', 'law by which theta evolves', lower=0.0_wp, upper=1.0_wp, &
+        optional=.true., whole=.true., words='ageing slip'), &
+        law_constant('theta_0', 'T', 'theta of a virgin point', lower=positive, optional=.true., &
+        default_from=3, default_per=4)]
+
     real(wp), parameter :: least_slip = 1.0e-100_wp   !! in units of d_c; see above
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
+    integer, parameter, public :: n_constants = size(table)
+    integer, parameter, public :: n_needed = 5   !! of them; the others have defaults
+
 contains
 
-    !> The law from its constants `a, b, d_c, v0, f0[, evolution[, theta_0]]`.
-    pure subroutine read_rate_state_law(n, constants, surface, status)
-        integer, intent(in) :: n                       !! number of constants, 5 or more
-        real(wp), intent(in) :: constants(n)           !! finite
-        type(rate_state_law), intent(out) :: surface   !! the law, if the status is ok
-        integer, intent(out) :: status                 !! ok, bad size, or bad property
+    pure subroutine read_constants(self, n, constants, n_own, status)
+        class(rate_state_law), intent(inout) :: self
+        integer, intent(in) :: n
+        real(wp), intent(in) :: constants(n)
+        integer, intent(out) :: n_own, status
+        real(wp) :: c(size(table))
 
+        n_own = size(table)
         status = friction_bad_size
-        if (n < 5) return
-        surface%a = constants(1)
-        surface%b = constants(2)
-        surface%d_c = constants(3)
-        surface%v0 = constants(4)
-        surface%f0 = constants(5)
+        if (n < n_needed) return
         status = friction_bad_property
-        if (surface%a <= 0.0_wp .or. surface%b < 0.0_wp .or. surface%d_c <= 0.0_wp) return
-        if (surface%v0 <= 0.0_wp .or. surface%f0 < 0.0_wp) return
-        surface%evolution = ageing
-        if (n > 5) then
-            if (abs(constants(6) - slipping) <= 0.0_wp) then
-                surface%evolution = slipping
-            else if (abs(constants(6) - ageing) > 0.0_wp) then
-                return
-            end if
-        end if
-        surface%theta_0 = surface%d_c / surface%v0
-        if (n > 6) surface%theta_0 = constants(7)
-        if (surface%theta_0 <= 0.0_wp) return
-        status = friction_ok
-    end subroutine read_rate_state_law
+        if (any(constants(:n_needed) < table(:n_needed)%lower)) return
+        self%a = constants(1)
+        self%b = constants(2)
+        self%d_c = constants(3)
+        self%v0 = constants(4)
+        self%f0 = constants(5)
+        call complete_constants(n_needed, table, n, constants, c, status)
+        if (status /= friction_ok) return
+        self%evolution = int(c(6))
+        self%theta_0 = c(7)
+    end subroutine read_constants
+
+    pure function name()
+        character(len=name_length) :: name
+
+        name = 'rate_and_state'
+    end function name
+
+    pure function constants()
+        type(constant_table) :: constants
+
+        constants%n = size(table)
+        constants%of(:size(table)) = table
+    end function constants
+
+    pure function typical_coefficient(self) result(mu)
+        class(rate_state_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = max(self%a, self%f0)
+    end function typical_coefficient
+
+    pure function internal() result(variable)
+        type(internal_variable) :: variable
+
+        variable = internal_variable(name='theta', unit='T', exists=.true.)
+    end function internal
+
+    !> It grows with the logarithm of the slip rate.
+    pure function largest_coefficient(self) result(mu)
+        class(rate_state_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = huge(mu)
+    end function largest_coefficient
 
     pure function virgin(self) result(state)
         class(rate_state_law), intent(in) :: self

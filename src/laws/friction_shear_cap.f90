@@ -8,10 +8,16 @@
 module friction_shear_cap
     use friction_kinds, only : wp
     use friction_law, only : below, law, law_state, law_traits, load_rates, sliding
+    use friction_law_constants, only : law_constant
     implicit none
     private
 
     public :: capped_law
+
+    !> The constant that every law takes after its own.
+    type(law_constant), parameter, public :: cap_constants(1) = [ &
+        law_constant('tau_max', 'F/L^2', 'largest tangential traction; 0: none', lower=0.0_wp, &
+        optional=.true.)]
 
     type, extends(law) :: capped_law
         class(law), pointer :: inner   !! the law without the cap

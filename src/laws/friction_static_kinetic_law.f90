@@ -7,19 +7,25 @@
 !> resistance falls.
 module friction_static_kinetic_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law, law_state, law_traits, load_rates, onset_drops, &
+    use friction_law, only : below, law_state, law_traits, load_rates, named_law, onset_drops, &
         onset_yields, sliding
+    use friction_law_constants, only : constant_table, law_constant, name_length
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
 
-    public :: read_static_kinetic_law, static_kinetic_law
+    public :: static_kinetic_law
 
-    type, extends(law) :: static_kinetic_law
+    type, extends(named_law) :: static_kinetic_law
         real(wp) :: mu_s   !! coefficient at v = 0, >= mu_k [-]
         real(wp) :: mu_k   !! coefficient at v -> infinity, >= 0 [-]
         real(wp) :: d_c    !! decay, >= 0 [T/L]
     contains
+        procedure :: read => read_constants
+        procedure, nopass :: name
+        procedure, nopass :: constants
+        procedure :: typical_coefficient
+        procedure :: kinetic_coefficient
         procedure :: virgin
         procedure :: admits
         procedure :: rest
@@ -32,25 +38,58 @@ module friction_static_kinetic_law
         procedure :: solve
     end type static_kinetic_law
 
+    !> Its own constants; in `props` they stand from place 4 on.
+    type(law_constant), parameter :: table(3) = [ &
+        law_constant('mu_s', '-', 'friction coefficient at rest', lower=0.0_wp, not_below=2), &
+        law_constant('mu_k', '-', 'friction coefficient in fast sliding', lower=0.0_wp), &
+        law_constant('d_c', 'T/L', 'decay of friction with the slip rate', lower=0.0_wp)]
+
 contains
 
-    !> The law from its constants `mu_s, mu_k, d_c`.
-    pure subroutine read_static_kinetic_law(n, constants, surface, status)
-        integer, intent(in) :: n                            !! number of constants, 3 or more
-        real(wp), intent(in) :: constants(n)                !! finite
-        type(static_kinetic_law), intent(out) :: surface    !! the law, if the status is ok
-        integer, intent(out) :: status                      !! ok, bad size, or bad property
+    pure subroutine read_constants(self, n, constants, n_own, status)
+        class(static_kinetic_law), intent(inout) :: self
+        integer, intent(in) :: n
+        real(wp), intent(in) :: constants(n)
+        integer, intent(out) :: n_own, status
 
+        n_own = size(table)
         status = friction_bad_size
         if (n < 3) return
-        surface%mu_s = constants(1)
-        surface%mu_k = constants(2)
-        surface%d_c = constants(3)
         status = friction_bad_property
-        if (surface%mu_k < 0.0_wp .or. surface%mu_s < surface%mu_k) return
-        if (surface%d_c < 0.0_wp) return
+        if (any(constants(:3) < table(:3)%lower)) return
+        if (constants(1) < constants(table(1)%not_below)) return
+        self%mu_s = constants(1)
+        self%mu_k = constants(2)
+        self%d_c = constants(3)
         status = friction_ok
-    end subroutine read_static_kinetic_law
+    end subroutine read_constants
+
+    pure function name()
+        character(len=name_length) :: name
+
+        name = 'static_kinetic'
+    end function name
+
+    pure function constants()
+        type(constant_table) :: constants
+
+        constants%n = size(table)
+        constants%of(:size(table)) = table
+    end function constants
+
+    pure function typical_coefficient(self) result(mu)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = self%mu_s
+    end function typical_coefficient
+
+    pure function kinetic_coefficient(self) result(mu)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = self%mu_k
+    end function kinetic_coefficient
 
     pure function virgin(self) result(state)
         class(static_kinetic_law), intent(in) :: self

@@ -18,6 +18,7 @@ module friction_subloading_exact_law
 
     type, extends(subloading_law) :: subloading_exact_law
     contains
+        procedure :: order
         procedure :: start_rate
         procedure :: rest
         procedure :: slide
@@ -26,6 +27,13 @@ module friction_subloading_exact_law
     end type subloading_exact_law
 
 contains
+
+    pure function order(self)
+        class(subloading_exact_law), intent(in) :: self
+        integer :: order
+
+        order = 2
+    end function order
 
     !> The flow of R depends on R alone, so that dR/dR_n = ln R/ln R_n.
     pure function start_rate(self, pressure, start, state) result(rate)

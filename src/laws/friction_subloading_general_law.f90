@@ -14,19 +14,13 @@
 module friction_subloading_general_law
     use friction_kinds, only : wp
     use friction_law, only : law_state, sliding
-    use friction_subloading_law, only : subloading_law
+    use friction_subloading_law, only : subloading_law, u_reciprocal
     implicit none
     private
 
     public :: subloading_general_law
 
-    !> Which U: values of `u_of_r`.
-    integer, parameter, public :: u_logarithm = 0   !! module `friction_subloading_law`
-    integer, parameter, public :: u_cotangent = 1
-    integer, parameter, public :: u_reciprocal = 2
-
     type, extends(subloading_law) :: subloading_general_law
-        integer :: u_of_r   !! one of the last two above
     contains
         procedure :: slide
         procedure :: solve

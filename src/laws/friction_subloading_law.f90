@@ -13,22 +13,43 @@
 !> and `e = 1 - r`.
 module friction_subloading_law
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, law_traits, load_rates, onset_gradual, sliding, &
-        unbounded
+    use friction_law, only : internal_variable, law_state, law_traits, load_rates, named_law, &
+        onset_gradual, sliding, unbounded
+    use friction_law_constants, only : complete_constants, constant_table, law_constant, &
+        name_length, positive
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
 
-    public :: subloading_law, read_subloading_law
+    public :: subloading_law
 
-    type, extends(law) :: subloading_law
+    !> Time integration: values of the constant `scheme`.
+    integer, parameter, public :: scheme_backward_euler = 0   !! as the law's authors chose
+    integer, parameter, public :: scheme_exact_rate = 1   !! exact for a constant slip rate: module
+                                                          !! friction_subloading_exact_law
+
+    !> Evolution of R: values of the constant `u_of_r`.
+    integer, parameter, public :: u_logarithm = 0
+    integer, parameter, public :: u_cotangent = 1    !! module friction_subloading_general_law
+    integer, parameter, public :: u_reciprocal = 2   !! likewise
+
+    type, extends(named_law) :: subloading_law
         real(wp) :: mu_s    !! static friction coefficient, >= mu_k [-]
         real(wp) :: mu_k    !! kinetic friction coefficient, >= 0 [-]
         real(wp) :: kappa   !! adhesion-breaking exponent, >= 0 [1/L]
         real(wp) :: xi      !! adhesion-forming exponent, >= 0 [1/T]
         real(wp) :: m       !! rate at which R approaches 1, > 0 [1/L]
         real(wp) :: mu_0    !! friction coefficient of a virgin point, mu_k to mu_s [-]
+        integer :: scheme   !! of time integration, one of those below
+        integer :: u_of_r   !! which function U of R, one of those below
     contains
+        procedure :: read => read_constants
+        procedure, nopass :: name
+        procedure, nopass :: constants
+        procedure, nopass :: internal
+        procedure :: typical_coefficient
+        procedure :: kinetic_coefficient
+        procedure :: healing_rate
         procedure :: virgin
         procedure :: admits
         procedure :: rest
@@ -42,34 +63,98 @@ module friction_subloading_law
         procedure :: solve
     end type subloading_law
 
+    !> Its own constants; in `props` they stand from place 4 on.
+    type(law_constant), parameter :: table(8) = [ &
+        law_constant('mu_s', '-', 'static friction coefficient', lower=0.0_wp, not_below=2), &
+        law_constant('mu_k', '-', 'kinetic friction coefficient', lower=0.0_wp), &
+        law_constant('kappa', '1/L', 'loss of friction with slip', lower=0.0_wp), &
+        law_constant('xi', '1/T', 'recovery of friction with time', lower=0.0_wp), &
+        law_constant('m', '1/L', 'rate at which R approaches 1', lower=positive), &
+        law_constant('mu_0', '-', 'friction coefficient of a virgin point', lower=0.0_wp, &
+        not_below=2, not_above=1, optional=.true., default_from=1), &
+        law_constant('scheme', '-', 'time integration', lower=0.0_wp, upper=1.0_wp, &
+        optional=.true., whole=.true., words='backward_euler exact_rate'), &
+        law_constant('u_of_r', '-', 'evolution of R', lower=0.0_wp, upper=2.0_wp, not_beside=7, &
+        optional=.true., whole=.true., words='logarithm cotangent reciprocal')]
+
     !> The next error of a third-order iteration is the cube of a step this small, that of Newton's
     !> method its square: round-off either way.
     real(wp), parameter :: small_step = 1.0e-5_wp, small_newton_step = 1.0e-8_wp
 
+    integer, parameter :: n_needed = 5   !! of them; the others have defaults
+
 contains
 
-    !> The law from its constants `mu_s, mu_k, kappa, xi, m[, mu_0]`.
-    pure subroutine read_subloading_law(n, constants, surface, status)
-        integer, intent(in) :: n                      !! number of constants, 5 or more
-        real(wp), intent(in) :: constants(n)          !! finite
-        type(subloading_law), intent(out) :: surface  !! the law, if the status is ok
-        integer, intent(out) :: status                !! ok, bad size, or bad property
+    pure subroutine read_constants(self, n, constants, n_own, status)
+        class(subloading_law), intent(inout) :: self
+        integer, intent(in) :: n
+        real(wp), intent(in) :: constants(n)
+        integer, intent(out) :: n_own, status
+        real(wp) :: c(size(table))
 
+        n_own = size(table)
         status = friction_bad_size
-        if (n < 5) return
-        surface%mu_s = constants(1)
-        surface%mu_k = constants(2)
-        surface%kappa = constants(3)
-        surface%xi = constants(4)
-        surface%m = constants(5)
-        surface%mu_0 = surface%mu_s
-        if (n > 5) surface%mu_0 = constants(6)
+        if (n < n_needed) return
         status = friction_bad_property
-        if (surface%mu_k < 0.0_wp .or. surface%mu_s < surface%mu_k) return
-        if (surface%mu_0 < surface%mu_k .or. surface%mu_0 > surface%mu_s) return
-        if (surface%kappa < 0.0_wp .or. surface%xi < 0.0_wp .or. surface%m <= 0.0_wp) return
+        if (any(constants(:n_needed) < table(:n_needed)%lower)) return
+        if (constants(1) < constants(table(1)%not_below)) return
+        self%mu_s = constants(1)
+        self%mu_k = constants(2)
+        self%kappa = constants(3)
+        self%xi = constants(4)
+        self%m = constants(5)
+        self%mu_0 = constants(table(6)%default_from)
+        self%scheme = int(table(7)%default)
+        self%u_of_r = int(table(8)%default)
         status = friction_ok
-    end subroutine read_subloading_law
+        if (n == n_needed) return
+        call complete_constants(n_needed, table, n, constants, c, status)
+        if (status /= friction_ok) return
+        self%mu_0 = c(6)
+        self%scheme = int(c(7))
+        self%u_of_r = int(c(8))
+    end subroutine read_constants
+
+    pure function name()
+        character(len=name_length) :: name
+
+        name = 'subloading'
+    end function name
+
+    pure function constants()
+        type(constant_table) :: constants
+
+        constants%n = size(table)
+        constants%of(:size(table)) = table
+    end function constants
+
+    pure function typical_coefficient(self) result(mu)
+        class(subloading_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = self%mu_s
+    end function typical_coefficient
+
+    pure function internal() result(variable)
+        type(internal_variable) :: variable
+
+        variable = internal_variable(name='R', unit='-', exists=.true.)
+    end function internal
+
+    pure function kinetic_coefficient(self) result(mu)
+        class(subloading_law), intent(in) :: self
+        real(wp) :: mu
+
+        mu = self%mu_k
+    end function kinetic_coefficient
+
+    pure function healing_rate(self, state) result(rate)
+        class(subloading_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp) :: rate
+
+        rate = self%xi * (self%mu_s - state%mu)
+    end function healing_rate
 
     pure function virgin(self) result(state)
         class(subloading_law), intent(in) :: self

@@ -184,6 +184,71 @@ static void bad_calls_are_codes_and_touch_nothing(void)
     CHECK(friction_update(3, du, 0, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_STATE);
 }
 
+static void laws_tell_their_constants(void)
+{
+    static const char *names[14] = {"law", "alpha_n", "alpha_t", "mu_s", "mu_k", "kappa", "xi", "m", "mu_0", "scheme",
+                                    "u_of_r", "tau_max", "mu_ratio", "direction"};
+    friction_law_facts law;
+    friction_constant_facts constant;
+    double value = 7;
+    const double rate_state[8] = {4, 1, 1, .01, .02, 6, 2, .4};
+    int i;
+
+    CHECK(friction_law_count() == 5);
+    CHECK(friction_get_law(1, &law) == FRICTION_OK && strcmp(law.name, "subloading") == 0 && law.constants == 14);
+    CHECK(strcmp(law.internal, "R") == 0 && law.has_internal == 1);
+    for (i = 0; i < 14; i++)
+        CHECK(friction_get_constant(1, i, &constant) == FRICTION_OK && strcmp(constant.name, names[i]) == 0);
+    CHECK(friction_get_law(2, &law) == FRICTION_OK && law.has_internal == 0 && strcmp(law.internal, "R") == 0);
+    CHECK(friction_get_law(4, &law) == FRICTION_OK && strcmp(law.internal, "theta") == 0
+          && strcmp(law.internal_unit, "T") == 0);
+    CHECK(friction_get_constant(4, 9, &constant) == FRICTION_OK && strcmp(constant.name, "theta_0") == 0);
+    CHECK(constant.optional == 1 && constant.choice == 0 && constant.lower > 0 && constant.lower < 1e-300);
+    CHECK(strcmp(constant.default_text, "d_c/v0") == 0 && strcmp(constant.rule, "must be > 0") == 0
+          && strcmp(constant.unit, "T") == 0 && strcmp(constant.meaning, "theta of a virgin point") == 0);
+    CHECK(friction_get_constant(4, 8, &constant) == FRICTION_OK && constant.choice == 1 && constant.upper == 1
+          && strcmp(constant.words, "ageing slip") == 0 && strcmp(constant.default_text, "ageing") == 0);
+    CHECK(friction_get_default(8, rate_state, 9, &value) == FRICTION_OK && value == 3);
+
+    CHECK(friction_get_law(0, &law) == FRICTION_BAD_LAW && friction_get_law(6, &law) == FRICTION_BAD_LAW);
+    CHECK(friction_get_law(1, NULL) == FRICTION_NULL_POINTER);
+    CHECK(friction_get_constant(6, 0, &constant) == FRICTION_BAD_LAW);
+    CHECK(friction_get_constant(1, 14, &constant) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_constant(1, -1, &constant) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_constant(1, 0, NULL) == FRICTION_NULL_POINTER);
+    value = 7;
+    CHECK(friction_get_default(8, rate_state, 3, &value) == FRICTION_BAD_PROPERTY && value == 7);
+    CHECK(friction_get_default(6, rate_state, 9, &value) == FRICTION_BAD_PROPERTY && value == 7);
+    CHECK(friction_get_default(8, rate_state, 13, &value) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_default(0, rate_state, 9, &value) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_default(8, NULL, 9, &value) == FRICTION_NULL_POINTER);
+    CHECK(friction_get_default(8, rate_state, 9, NULL) == FRICTION_NULL_POINTER);
+}
+
+static void broken_rules_are_told(void)
+{
+    double bad[9];
+    char text[96] = "untouched";
+
+    CHECK(friction_check(9, props, 96, text) == FRICTION_OK && strcmp(text, "") == 0);
+    memcpy(bad, props, sizeof bad);
+    bad[8] = 0.46;
+    CHECK(friction_check(9, bad, 96, text) == FRICTION_BAD_PROPERTY
+          && strcmp(text, "mu_0 must be from mu_k to mu_s") == 0);
+    CHECK(friction_check(9, bad, 8, text) == FRICTION_BAD_PROPERTY && strcmp(text, "mu_0 mu") == 0);
+    CHECK(friction_check(9, bad, 0, NULL) == FRICTION_BAD_PROPERTY);
+    CHECK(friction_check(7, props, 96, text) == FRICTION_BAD_SIZE && strcmp(text, "m is missing") == 0);
+    bad[8] = NAN;
+    CHECK(friction_check(9, bad, 96, text) == FRICTION_BAD_PROPERTY && strstr(text, "finite") != NULL);
+    bad[0] = 7;
+    bad[8] = 1;
+    CHECK(friction_check(9, bad, 96, text) == FRICTION_BAD_LAW);
+    CHECK(friction_check(9, NULL, 96, text) == FRICTION_NULL_POINTER);
+    CHECK(friction_check(9, props, 96, NULL) == FRICTION_NULL_POINTER);
+    CHECK(friction_check(-1, props, 96, text) == FRICTION_BAD_SIZE);
+    CHECK(friction_check(9, props, -1, text) == FRICTION_BAD_SIZE);
+}
+
 static void texts_are_constant_c_strings(void)
 {
     CHECK(strcmp(friction_message(FRICTION_OK), "success") == 0);
@@ -202,6 +267,8 @@ int main(void)
     rates_are_what_the_update_tends_to();
     slip_rates_balance_the_traction();
     bad_calls_are_codes_and_touch_nothing();
+    laws_tell_their_constants();
+    broken_rules_are_told();
     texts_are_constant_c_strings();
     printf("%d failures\n", failures);
     return failures != 0;
