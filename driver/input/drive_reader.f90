@@ -208,6 +208,7 @@ contains
 
         n = size(rows%lines)
         drive%start = rows%values(rows%column('time'), :) - rows%values(rows%column('time'), 1)
+        drive%measured_until = drive%start(n)
         if (rows%column('velocity') > 0) then
             drive%velocity = rows%values(rows%column('velocity'), :)
             drive%acceleration = rate_of(drive%velocity)

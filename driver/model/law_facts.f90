@@ -2,12 +2,12 @@
 !> (docs/laws.md).
 module law_facts
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : law_coulomb, law_rate_state, law_slip_weakening, law_subloading, &
-        scheme_exact_rate, statev_mu, statev_r
+    use friction_mod, only : law_coulomb, law_rate_state, law_slip_weakening, &
+        law_static_kinetic, law_subloading, scheme_exact_rate, statev_mu, statev_r
     implicit none
     private
 
-    public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
+    public :: coefficient_error, drops_at_once, healing_rate, is_second_order, is_subloading, &
         internal_variable, kinetic_coefficient, shear_cap, static_coefficient, typical_coefficient
 
 contains
@@ -78,6 +78,15 @@ contains
         mu = props(4)
         if (nint(props(1)) == law_rate_state) mu = huge(mu)
     end function static_coefficient
+
+    !> Does friction fall at once, in no slip and no time, when slip begins?
+    pure function drops_at_once(props) result(yes)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        logical :: yes
+
+        yes = nint(props(1)) == law_static_kinetic
+        if (yes) yes = props(4) > props(5) .and. props(6) > 0.0_dp
+    end function drops_at_once
 
     !> What the law calls its internal variable; R if it has none.
     pure function internal_variable(props) result(name)

@@ -18,6 +18,7 @@ module loading_programme
         real(dp) :: amplitude = 0.0_dp             !! of the oscillating normal traction [F/L^2]
         real(dp) :: frequency = 0.0_dp             !! [1/T]
         real(dp) :: phase = 0.0_dp                 !! at time 0 [rad]
+        real(dp) :: measured_until = huge(1.0_dp)  !! end of the file that it is from [T]
         integer :: listed = 1                      !! pieces that the summary tells apart
     contains
         procedure :: piece, position, drive_velocity, normal_traction, largest_normal, next_start

@@ -1,13 +1,14 @@
 !> What a run has come to, in a screen of text.
 module summary
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
-    use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
     use run_outcome, only : event_totals, outcome
+    use run_warnings, only : find_warnings, run_warning
     use run_settings, only : settings
     implicit none
     private
 
-    public :: print_event_times, print_summary, summary_row
+    public :: print_event_times, print_summary, print_warnings, summary_row
 
     character(len=*), parameter, public :: summary_columns = 'steps,time,newton_iterations,' &
         // 'rejected_steps,snap_back_steps,events,mean_period,mean_stress_drop,peak_velocity,' &
@@ -76,6 +77,20 @@ contains
         call print_energy(result)
         write (output_unit, '(2a)') 'table              ', table
     end subroutine print_summary
+
+    !> On standard error, a line each.
+    subroutine print_warnings(input, run, result)
+        character(len=*), intent(in) :: input   !! name of the file
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable :: warnings(:)
+        integer :: i
+
+        call find_warnings(run, result, warnings)
+        do i = 1, size(warnings)
+            write (error_unit, '(4a)') 'stickslip: ', input, ': warning: ', trim(warnings(i)%text)
+        end do
+    end subroutine print_warnings
 
     !> How far the events of a run are from those of a tighter one.
     subroutine print_event_times(onsets, tighter)

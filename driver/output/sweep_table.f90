@@ -4,6 +4,7 @@ module sweep_table
     use number_text, only : quoted_field, short_text
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
+    use run_warnings, only : find_warnings, run_warning
     use sweep_settings, only : sweep_axis
     implicit none
     private
@@ -11,7 +12,7 @@ module sweep_table
     public :: failure_text, late_from, point_text, result_text, table_header
 
     character(len=*), parameter :: results_header = 'status,regime,events,late_events,period,' &
-        // 'stress_drop,peak_velocity,mean_force,energy_defect,reason'
+        // 'stress_drop,peak_velocity,mean_force,energy_defect,warnings,reason'
 
     real(dp), parameter :: start_up = 0.5_dp   !! the part of a run that is taken to be start-up
 
@@ -50,7 +51,7 @@ contains
     end function point_text
 
     !> The rest of a row.
-    pure function result_text(run, result) result(text)
+    function result_text(run, result) result(text)
         type(settings), intent(in) :: run   !! its programme has a piece that starts at `late_from`
         type(outcome), intent(in) :: result
         character(len=:), allocatable :: text
@@ -72,15 +73,32 @@ contains
             // ',' // ratio(sum(late%force_drop), late_events * run%area) &
             // ',' // short_text(maxval(late%peak_velocity))
         text = text // ',' // ratio(result%energy%drive_work, run%drive%position(result%time)) &
-            // ',' // ratio(result%energy%unbalanced(), result%energy%drive_work) // ','
+            // ',' // ratio(result%energy%unbalanced(), result%energy%drive_work) // ',' &
+            // warning_codes(run, result) // ','
     end function result_text
+
+    !> Codes of the warnings, blanks between them.
+    function warning_codes(run, result) result(codes)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        character(len=:), allocatable :: codes
+        type(run_warning), allocatable :: warnings(:)
+        integer :: i
+
+        call find_warnings(run, result, warnings)
+        codes = ''
+        do i = 1, size(warnings)
+            if (i > 1) codes = codes // ' '
+            codes = codes // trim(warnings(i)%code)
+        end do
+    end function warning_codes
 
     !> The rest of a row of a run that did not reach its end.
     pure function failure_text(reason) result(text)
         character(len=*), intent(in) :: reason
         character(len=:), allocatable :: text
 
-        text = 'failed,,,,NaN,NaN,NaN,NaN,NaN,' // quoted_field(reason)
+        text = 'failed,,,,NaN,NaN,NaN,NaN,NaN,,' // quoted_field(reason)
     end function failure_text
 
     !> NaN where there is nothing to divide by.

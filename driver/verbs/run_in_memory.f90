@@ -11,6 +11,7 @@ module run_in_memory
     use run_outcome, only : outcome
     use run_reader, only : read_settings
     use run_settings, only : settings
+    use run_warnings, only : find_warnings, run_warning
     use simulation, only : simulate, simulation_run, start_run
     use slider_system, only : slider_state
     use summary, only : summary_columns, summary_row
@@ -109,6 +110,8 @@ contains
         type(simulation_run) :: live
         type(observer_slot) :: observers(2)
         type(outcome) :: result
+        type(run_warning), allocatable :: warnings(:)
+        integer :: i
 
         ! gfortran (12) keeps the lengths of some functions' results in static memory, and reading
         ! calls such functions: one thread at a time.
@@ -126,6 +129,10 @@ contains
         observers(1)%it => this%found
         observers(2)%it => caller
         call simulate(live, observers, result)
+        call find_warnings(run, result, warnings)
+        do i = size(warnings), 1, -1
+            this%warnings = trim(warnings(i)%text) // new_line('a') // this%warnings
+        end do
         call this%summary%start(summary_columns)
         call this%summary%add(summary_row(run, result))
         status = exit_done

@@ -13,7 +13,7 @@ module study
     use run_reader, only : read_settings
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
-    use summary, only : print_event_times, print_summary
+    use summary, only : print_event_times, print_summary, print_warnings
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
         has_faults, is_for, is_readable, tell_failure
     implicit none
@@ -72,6 +72,7 @@ contains
         call watch_for_interrupts()
         call watched_run(wanted, base, run, live, records, result)
         if (.not. wanted%quiet) call print_summary(run, result, base // '.csv')
+        call print_warnings(wanted%input, run, result)
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
         exit_status = exit_done

@@ -1,0 +1,104 @@
+!> What a user should know about a run that came to its end: where its results may not be what the
+!> model means (docs/driver.md, warnings).
+module run_warnings
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use law_facts, only : drops_at_once
+    use run_outcome, only : outcome
+    use run_settings, only : settings
+    implicit none
+    private
+
+    public :: find_warnings, run_warning
+
+    type :: run_warning
+        character(len=16) :: code = ''     !! one word, for tables
+        character(len=240) :: text = ''    !! one line
+    end type run_warning
+
+contains
+
+    subroutine find_warnings(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(out) :: warnings(:)
+
+        allocate (warnings(0))
+        call look_at_energy(result, warnings)
+        if (run%mass > 0.0_dp) then
+            if (.not. run%adaptive) call look_at_step(run, result, warnings)
+            call look_at_contact(run, result, warnings)
+        end if
+        call look_at_file(run, result, warnings)
+    end subroutine find_warnings
+
+    !> What comes in must be somewhere: the rest is the error of the integration in time.
+    subroutine look_at_energy(result, warnings)
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: allowed = 0.02_dp   !! part of what has passed through the system
+        character(len=240) :: text
+        real(dp) :: passed
+
+        associate (e => result%energy)
+            passed = max(abs(e%drive_work), abs(e%at_start), e%dissipated + e%damped)
+            if (abs(e%unbalanced()) <= allowed * passed) return
+            write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
+                100.0_dp * abs(e%unbalanced()) / passed, ' %: take shorter steps (dt), or &
+                &steps by their error (rtol)'
+        end associate
+        warnings = [warnings, run_warning('energy_balance', text)]
+    end subroutine look_at_energy
+
+    !> A slip event lasts about pi sqrt(M/K).
+    subroutine look_at_step(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: pi = acos(-1.0_dp)
+        real(dp), parameter :: longest = 0.1_dp   !! step, part of a slip event
+        character(len=240) :: text
+        real(dp) :: lasts
+
+        if (sum(result%pieces%events) + result%chain_events == 0) return
+        lasts = pi * sqrt(run%mass / run%stiffness)
+        if (run%dt <= longest * lasts) return
+        write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
+            &events, which last about pi sqrt(mass/stiffness) =', lasts, ': take thirty steps &
+            &or more to an event'
+        warnings = [warnings, run_warning('long_step', text)]
+    end subroutine look_at_step
+
+    !> Where friction drops at once as slip begins, the contact spring starts to ring. If nothing
+    !> damps that, it decides when the block sticks again.
+    subroutine look_at_contact(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
+        real(dp) :: critical   ! damping [F T/L]
+
+        if (.not. drops_at_once(run%props) .or. result%energy%dissipated <= 0.0_dp) return
+        if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
+        if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
+        critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(3)))
+        if (run%damping >= least * critical) return
+        warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
+            &begins, and the contact spring (alpha_t) rings undamped: periods and stress drops &
+            &depend on it and on dt. Take rho_infinity = 0 in &time, or a damping')]
+    end subroutine look_at_contact
+
+    subroutine look_at_file(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: round_off = 1.0e-9_dp
+        character(len=240) :: text
+
+        if (result%time <= run%drive%measured_until * (1.0_dp + round_off)) return
+        write (text, '(a, es12.5, a, es12.5, a)') 'the file of the drive ends at time ', &
+            run%drive%measured_until, ', before t_end = ', run%t_end, ': its last velocity and &
+            &normal traction went on'
+        warnings = [warnings, run_warning('short_file', text)]
+    end subroutine look_at_file
+
+end module run_warnings

@@ -1,0 +1,95 @@
+"""Warnings: one line each on standard error, where results may not be what the model means; never else.
+
+STICKSLIP names the program.
+"""
+import math
+import pathlib
+import unittest
+
+from test_program import Program, namelist
+
+INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
+
+# a textbook: mass 10 kg, spring 4000 N/m, 0.01 m/s, friction 0.3 and 0.2 under 98.1 N
+TEXTBOOK = """&friction law='static_kinetic', alpha_n=1e8, alpha_t=1e8, mu_s=0.3, mu_k=0.2, d_c=1e4 /
+&slider mass=10, stiffness=4000, normal_traction=98.1 /
+&drive velocity=0.01 /
+&time t_end=3, dt=1e-4 /
+"""
+CHAIN = """&friction law='static_kinetic' alpha_n=100.0 alpha_t=100.0 mu_s=1.0 mu_k=0.0 d_c=6.0 /
+&slider mass=1.0 stiffness=1.0 normal_traction=1.0 /
+&drive velocity=0.01 /
+&chain n_blocks=50 coupling=36.0 ends='periodic' scatter=0.01 /
+&time t_end=300.0 dt=0.01 /
+&output interval=50 /
+"""
+
+
+class Warnings(Program):
+    def warnings(self, text, **options):
+        result = self.run_text(text, '--no-plot', **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = result.stderr.splitlines()
+        for line in lines:
+            self.assertTrue(line.startswith('stickslip: case.nml: warning: '), line)
+        return lines
+
+    def test_a_contact_that_rings_undamped_is_named_and_so_is_the_remedy(self):
+        lines = self.warnings(TEXTBOOK)
+        self.assertEqual(len(lines), 1)
+        self.assertIn('contact spring (alpha_t) rings undamped', lines[0])
+        self.assertIn('rho_infinity = 0', lines[0])
+        # the remedy helps: the textbook's period is 0.668, its drop 20.0
+        self.assertEqual(self.warnings(TEXTBOOK.replace('dt=1e-4', 'dt=1e-4, rho_infinity=0')), [])
+        events = self.rows('case_out/case_events.csv')
+        self.assertAlmostEqual(float(events[-1]['recurrence_time']), 0.668, delta=0.004)
+        self.assertAlmostEqual(float(events[-1]['stress_drop']), 20.0, delta=0.2)
+
+    def test_a_damped_contact_and_one_that_never_slips_are_left_alone(self):
+        self.assertEqual(self.warnings(TEXTBOOK.replace('mass=10', 'mass=10, damping=1e4')), [])
+        self.assertEqual(self.warnings(TEXTBOOK.replace('mu_k=0.2', 'mu_k=0.3')), [])
+        self.assertEqual(self.warnings(TEXTBOOK.replace('t_end=3', 't_end=0.2')), [])
+
+    def test_energy_that_is_out_of_balance_is_told_with_its_part(self):
+        lines = self.warnings(CHAIN)
+        told = [line for line in lines if 'balance of energy is open by' in line]
+        self.assertEqual(len(told), 1)
+        said = float(told[0].split('open by')[1].split('%')[0])
+        summary = self.run_text(CHAIN, '--no-plot').stdout
+        unbalanced = float(summary.split('unbalanced')[1].split()[0])
+        work = float(summary.split('work of the drive')[1].split()[0])
+        self.assertGreater(abs(unbalanced / work), 0.02)
+        self.assertAlmostEqual(said, 100 * abs(unbalanced / work), delta=0.1)
+
+    def test_a_step_too_long_for_the_slip(self):
+        lasts = math.pi * math.sqrt(1e-3)   # of the slider of test_program
+        long = {('time', 't_end'): '12', ('time', 'rho_infinity'): '0'}
+        lines = self.warnings(namelist({**long, ('time', 'dt'): str(0.3 * lasts)}))
+        self.assertTrue(any('the step dt = 2.98E-02 is long for slip events' in line for line in lines), lines)
+        self.assertEqual(self.warnings(namelist({('time', 't_end'): '12'})), [])   # dt = 1e-3
+        # no slip is too fast for a block that does not stick
+        slow = (INPUTS / 'slow_steady.nml').read_text().replace('dt = 1e-3', 'dt = 1e-2')
+        self.assertFalse(any('long for slip' in line for line in self.warnings(slow)))
+
+    def test_a_measured_file_that_ends_before_the_run(self):
+        (self.folder / 'drive.csv').write_text('time,velocity\n0,1\n2,1\n')
+        text = namelist({('drive', 'file'): "'drive.csv'", ('time', 't_end'): '2'}, [('drive', 'velocity')])
+        self.assertEqual(self.warnings(text), [])
+        lines = self.warnings(text.replace('t_end = 2', 't_end = 3'))
+        self.assertEqual(len(lines), 1)
+        self.assertIn('the file of the drive ends at time  2.00000E+00, before t_end', lines[0])
+
+    def test_sweeps_have_a_column_of_them(self):
+        sweep = TEXTBOOK + "&sweep key='slider%damping', values=0, 1e4 /"
+        self.assertEqual(self.warnings(sweep, verb='sweep'), [])
+        rows = self.rows('case_out/case_sweep.csv')
+        self.assertEqual([row['warnings'] for row in rows], ['undamped_contact', ''])
+
+    def test_the_inputs_of_the_project_have_none(self):
+        for name in ('stick_slip', 'slow_steady', 'velocity_steps', 'adaptive', 'from_file'):
+            (self.folder / 'from_file.csv').write_text((INPUTS / 'from_file.csv').read_text())
+            self.assertEqual(self.warnings((INPUTS / f'{name}.nml').read_text()), [], name)
+
+
+if __name__ == '__main__':
+    unittest.main()
