@@ -3,7 +3,7 @@ program stickslip
     use, intrinsic :: iso_fortran_env, only : error_unit
     use check, only : check_input
     use command_line, only : command, print_help, print_version, read_command_line
-    use platform, only : exit_program
+    use platform, only : exit_program, hold_output
     use point_study, only : run_point
     use study, only : run_input
     use sweep, only : sweep_input
@@ -12,6 +12,7 @@ program stickslip
     type(command) :: wanted
     integer :: exit_status
 
+    call hold_output()
     call read_command_line(wanted)
     if (len(wanted%problem) > 0) then
         write (error_unit, '(2a)') 'stickslip: ', wanted%problem

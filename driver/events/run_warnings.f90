@@ -2,7 +2,7 @@
 !> model means (docs/driver.md, warnings).
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use law_facts, only : drops_at_once
+    use law_facts, only : rate_weakening
     use run_outcome, only : outcome
     use run_settings, only : settings
     implicit none
@@ -55,7 +55,7 @@ contains
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: pi = acos(-1.0_dp)
-        real(dp), parameter :: longest = 0.1_dp   !! step, part of a slip event
+        real(dp), parameter :: longest = 0.2_dp   !! step, part of a slip event
         character(len=240) :: text
         real(dp) :: lasts
 
@@ -68,8 +68,9 @@ contains
         warnings = [warnings, run_warning('long_step', text)]
     end subroutine look_at_step
 
-    !> Where friction drops at once as slip begins, the contact spring starts to ring. If nothing
-    !> damps that, it decides when the block sticks again.
+    !> Where friction falls faster with the slip rate than the contact spring unloads in a step, it
+    !> drops at once as slip begins, and the contact spring starts to ring. If nothing damps that,
+    !> it decides when the block sticks again.
     subroutine look_at_contact(run, result, warnings)
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
@@ -77,7 +78,8 @@ contains
         real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
         real(dp) :: critical   ! damping [F T/L]
 
-        if (.not. drops_at_once(run%props) .or. result%energy%dissipated <= 0.0_dp) return
+        if (result%energy%dissipated <= 0.0_dp) return
+        if (run%drive%largest_normal() * rate_weakening(run%props) <= run%dt * run%props(3)) return
         if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
         critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(3)))

@@ -49,6 +49,8 @@ contains
         call read_chain(file, run%mass, run%chain)
         call derive_slip_rate(file, run)
         call read_events(file, run)
+        call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
+            default=10.0_dp)
         call read_units(file, run%units)
         call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
@@ -69,12 +71,14 @@ contains
             run%event_slip_rate, above(0.0_dp))
     end subroutine read_events
 
-    !> A number that is another one for any other input, but for keys of &output that change no
-    !> results.
+    !> A number that is another one for any other input, but for keys that change no results.
     pure function fingerprint_of(listing, drive) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
         type(programme), intent(in) :: drive      !! files that they name included
         integer(int64) :: number
+        character(len=19), parameter :: without(5) = ['&output checkpoint ', &
+            '&output table_limit', '&output length_unit', '&output force_unit ', &
+            '&output time_unit  ']
         integer :: start, length, i
 
         number = 0
@@ -82,9 +86,9 @@ contains
         do while (start <= len(listing))
             length = index(listing(start:), new_line('a'))
             associate (line => listing(start:start + length - 1))
-                if (index(line, '&output checkpoint') /= 1 .and. .not. (index(line, '&output ') &
-                    == 1 .and. index(line, '_unit') > 0)) call mix([(int(iachar(line(i:i)), &
-                    int64), i = 1, length)], number)
+                if (all([(index(line, trim(without(i)) // ' ') /= 1, i = 1, size(without))])) then
+                    call mix([(int(iachar(line(i:i)), int64), i = 1, length)], number)
+                end if
             end associate
             start = start + length
         end do

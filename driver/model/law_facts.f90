@@ -7,8 +7,9 @@ module law_facts
     implicit none
     private
 
-    public :: coefficient_error, drops_at_once, healing_rate, is_second_order, is_subloading, &
-        internal_variable, kinetic_coefficient, shear_cap, static_coefficient, typical_coefficient
+    public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
+        internal_variable, kinetic_coefficient, rate_weakening, shear_cap, static_coefficient, &
+        typical_coefficient
 
 contains
 
@@ -79,14 +80,15 @@ contains
         if (nint(props(1)) == law_rate_state) mu = huge(mu)
     end function static_coefficient
 
-    !> Does friction fall at once, in no slip and no time, when slip begins?
-    pure function drops_at_once(props) result(yes)
+    !> How fast the friction coefficient falls with the slip rate when slip begins [T/L]; 0 under
+    !> laws whose friction does not depend on it then.
+    pure function rate_weakening(props) result(slope)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        logical :: yes
+        real(dp) :: slope                  !! >= 0
 
-        yes = nint(props(1)) == law_static_kinetic
-        if (yes) yes = props(4) > props(5) .and. props(6) > 0.0_dp
-    end function drops_at_once
+        slope = 0.0_dp
+        if (nint(props(1)) == law_static_kinetic) slope = (props(4) - props(5)) * props(6)
+    end function rate_weakening
 
     !> What the law calls its internal variable; R if it has none.
     pure function internal_variable(props) result(name)

@@ -35,6 +35,7 @@ module run_settings
         real(dp) :: event_drop = 1.0e-3_dp  !! of slip events: part of the static friction force
         real(dp) :: event_slip_rate = 0.0_dp   !! slip rate in them [L/T]; 0: by the drive's speed
         integer :: n_steps = 0              !! follows from t_end and dt
+        real(dp) :: table_limit = 10.0_dp   !! that the tables may take on disk [GB]
         type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results
     end type settings

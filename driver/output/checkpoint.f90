@@ -39,6 +39,8 @@ contains
             call self%write_now()
             news%interrupted = .true.
             call news%stop_run('interrupted; stickslip run with --resume goes on from here')
+        else if (len(news%problem) > 0) then
+            call self%write_now()
         else if (mod(news%steps, steps_between_looks) == 0) then
             if (seconds() - self%last < self%run%checkpoint) return
             call self%write_now()

@@ -12,6 +12,7 @@ module recorder
     use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
+    use table_size, only : gigabyte
     use text_file, only : output_file
     use thinned_series, only : thinned
     implicit none
@@ -34,6 +35,7 @@ module recorder
         character(len=:), allocatable :: columns   !! of the time series
         integer :: fields_interval = 0  !! steps between two rows of fields; 0: none
         integer :: rows = 0
+        real(dp) :: table_limit = huge(1.0_dp)   !! [bytes]
         integer :: fields_due = 0       !! steps since the last row of fields
     contains
         procedure :: prepare, open, begin, see, finish, visit
@@ -56,6 +58,7 @@ contains
         call self%clock%prepare(run)
         self%columns = trim(series_columns(run%props))
         self%fields_interval = run%fields
+        self%table_limit = gigabyte * run%table_limit
         call self%picture%prepare(columns=n_series, force=6, speed=4)
     end subroutine prepare
 
@@ -129,6 +132,8 @@ contains
         if (self%series%failed) call news%stop_run('cannot write the time series (disk full?)')
         if (self%events%failed) call news%stop_run('cannot write the events (disk full?)')
         if (self%fields%file%failed) call news%stop_run('cannot write the fields (disk full?)')
+        if (self%series%bytes + self%fields%file%bytes > self%table_limit) call news%stop_run( &
+            'the tables are as large as &output table_limit: resume the run with a larger one')
     end subroutine tell_loss
 
     !> Writes what was cut short, and closes the files.

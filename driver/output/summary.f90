@@ -1,7 +1,8 @@
 !> What a run has come to, in a screen of text.
 module summary
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
-    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
+    use platform, only : report
     use run_outcome, only : event_totals, outcome
     use run_warnings, only : find_warnings, run_warning
     use run_settings, only : settings
@@ -51,21 +52,21 @@ contains
         do i = 1, size(result%pieces)
             call add(all, result%pieces(i))
         end do
-        write (output_unit, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
+        write (report, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
         most = ', most '
         if (run%adaptive) most = ' with all its parts, most in a part '
-        write (output_unit, '(4a, i0)') 'Newton iterations  ', &
+        write (report, '(4a, i0)') 'Newton iterations  ', &
             trim(per_step(result%iterations, result%steps)), ' a step', most, &
             result%most_iterations
-        if (result%rejected > 0) write (output_unit, '(a, i0)') 'rejected steps     ', &
+        if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', &
             result%rejected
-        if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
+        if (result%snap_backs > 0) write (report, '(a, i0, a)') 'snap-back          ', &
             result%snap_backs, &
             ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
-        write (output_unit, '(a, i0)') 'slip events        ', all%events
+        write (report, '(a, i0)') 'slip events        ', all%events
         if (run%chain%n_blocks > 1) then
-            write (output_unit, '(2(a, i0), a)') 'events of blocks   ', result%chain_events, &
+            write (report, '(2(a, i0), a)') 'events of blocks   ', result%chain_events, &
                 ', and ', result%cut_events, ' under way at the end'
             call line('largest moment     ', result%largest_moment, &
                 min(1, result%chain_events), '[L^3]')
@@ -75,7 +76,7 @@ contains
         call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')
         if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
         call print_energy(result)
-        write (output_unit, '(2a)') 'table              ', table
+        write (report, '(2a)') 'table              ', table
     end subroutine print_summary
 
     !> On standard error, a line each.
@@ -97,14 +98,14 @@ contains
         real(dp), intent(in) :: onsets(:), tighter(:)   !! [T]
         real(dp) :: apart(min(size(onsets), size(tighter)))
 
-        if (size(onsets) /= size(tighter)) write (output_unit, '(a, i0, a, i0)') &
+        if (size(onsets) /= size(tighter)) write (report, '(a, i0, a, i0)') &
             'events             ', size(onsets), '; by the tighter run ', size(tighter)
         if (size(apart) == 0) then
-            write (output_unit, '(a)') 'event-time error   -            no events to compare'
+            write (report, '(a)') 'event-time error   -            no events to compare'
             return
         end if
         apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
-        write (output_unit, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
+        write (report, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
             ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'
     end subroutine print_event_times
 
@@ -132,7 +133,7 @@ contains
         real(dp), intent(in) :: total
         integer, intent(in) :: count
 
-        write (output_unit, '(4a)') title, mean(total, count), ' ', unit
+        write (report, '(4a)') title, mean(total, count), ' ', unit
     end subroutine line
 
     pure function mean(total, count) result(text)
@@ -151,10 +152,10 @@ contains
         type(event_totals), intent(in) :: pieces(:)
         integer :: i
 
-        write (output_unit, '(a)') 'from time    velocity     normal       events  period       ' &
+        write (report, '(a)') 'from time    velocity     normal       events  period       ' &
             // 'stress drop  peak velocity'
         do i = 1, size(pieces)
-            write (output_unit, '(3(es11.4, 2x), i6, 2x, 2(a, 1x), a)') run%drive%start(i), &
+            write (report, '(3(es11.4, 2x), i6, 2x, 2(a, 1x), a)') run%drive%start(i), &
                 run%drive%velocity(i), run%drive%normal(i), pieces(i)%events, &
                 mean(pieces(i)%period, pieces(i)%recurrences), &
                 mean(pieces(i)%force_drop / run%area, pieces(i)%events), &
@@ -166,15 +167,15 @@ contains
         type(outcome), intent(in) :: result
 
         associate (e => result%energy)
-            write (output_unit, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
-            if (abs(e%at_start) > 0.0_dp) write (output_unit, '(a, es14.6)') &
+            write (report, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
+            if (abs(e%at_start) > 0.0_dp) write (report, '(a, es14.6)') &
                 '  less the start   ', -e%at_start
-            write (output_unit, '(a, es14.6)') '  kinetic          ', e%kinetic
-            write (output_unit, '(a, es14.6)') '  spring           ', e%spring
-            write (output_unit, '(a, es14.6)') '  contact, elastic ', e%contact
-            write (output_unit, '(a, es14.6)') '  damped           ', e%damped
-            write (output_unit, '(a, es14.6)') '  dissipated       ', e%dissipated
-            write (output_unit, '(a, es14.6)') '  unbalanced       ', e%unbalanced()
+            write (report, '(a, es14.6)') '  kinetic          ', e%kinetic
+            write (report, '(a, es14.6)') '  spring           ', e%spring
+            write (report, '(a, es14.6)') '  contact, elastic ', e%contact
+            write (report, '(a, es14.6)') '  damped           ', e%damped
+            write (report, '(a, es14.6)') '  dissipated       ', e%dissipated
+            write (report, '(a, es14.6)') '  unbalanced       ', e%unbalanced()
         end associate
     end subroutine print_energy
 

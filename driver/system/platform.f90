@@ -1,17 +1,21 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
     use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, &
-        c_null_char, c_null_funptr
+        c_null_char, c_null_ptr, c_ptr
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     implicit none
     private
 
-    public :: cores, exit_program, have_command, interrupted, is_directory, is_terminal, &
-        make_directory, remove_file, rename_file, seconds, shell_word, truncate_file, &
-        watch_for_interrupts
+    public :: cores, exit_program, have_command, hold_output, interrupted, is_directory, &
+        is_terminal, make_directory, remove_file, rename_file, seconds, shell_word, &
+        truncate_file, watch_for_interrupts
 
     ! A signal handler can leave its message nowhere else.
     logical, volatile :: was_interrupted = .false.
+    !> Where the program says what it has found.
+    integer, protected, public :: report = output_unit
+
+    integer(c_int), parameter :: sigint = 2_c_int, sigterm = 15_c_int
 
     interface
         function c_isatty(descriptor) result(answer) bind(C, name='isatty')
@@ -67,6 +71,26 @@ module platform
             type(c_funptr) :: before
         end function c_signal
 
+        function c_puts(text) result(status) bind(C, name='puts')
+            import :: c_char, c_int
+            implicit none
+            character(kind=c_char), intent(in) :: text(*)
+            integer(c_int) :: status
+        end function c_puts
+
+        function c_fflush(stream) result(status) bind(C, name='fflush')
+            import :: c_int, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: stream
+            integer(c_int) :: status
+        end function c_fflush
+
+        subroutine c_end(status) bind(C, name='_exit')
+            import :: c_int
+            implicit none
+            integer(c_int), value, intent(in) :: status
+        end subroutine c_end
+
         subroutine c_exit(status) bind(C, name='exit')
             import :: c_int
             implicit none
@@ -76,18 +100,50 @@ module platform
 
 contains
 
+    !> Keeps what the program says on standard output until `exit_program`. gfortran's run-time
+    !> library takes output that goes nowhere for success; the C library does not.
+    subroutine hold_output()
+        integer :: status
+
+        open (newunit=report, status='scratch', action='readwrite', iostat=status)
+        if (status /= 0) report = output_unit
+    end subroutine hold_output
+
     !> Ends the program with an exit status, and without the remarks that `stop` would print.
     subroutine exit_program(status)
         integer, intent(in) :: status   !! 0 done, 1 the run failed, 2 bad usage or input
+        integer :: end_status
+        logical :: said
 
+        end_status = status
+        said = .true.
+        if (report /= output_unit) call say_what_was_held(said)
+        if (.not. said .and. status == 0) then
+            write (error_unit, '(a)') 'stickslip: standard output cannot be written (disk full?)'
+            end_status = 1
+        end if
         flush (output_unit)
         flush (error_unit)
-        call c_exit(int(status, c_int))
+        call c_exit(int(end_status, c_int))
     end subroutine exit_program
+
+    subroutine say_what_was_held(said)
+        logical, intent(out) :: said   !! all of it has arrived
+        character(len=8192) :: line
+        integer :: status
+
+        said = .true.
+        rewind (report, iostat=status)
+        do
+            if (status == 0) read (report, '(a)', iostat=status) line
+            if (status /= 0) exit
+            said = said .and. c_puts(trim(line) // c_null_char) >= 0
+        end do
+        said = c_fflush(c_null_ptr) == 0 .and. said
+    end subroutine say_what_was_held
 
     !> From now on Ctrl-C and a request to end are noted, not obeyed at once.
     subroutine watch_for_interrupts()
-        integer(c_int), parameter :: sigint = 2_c_int, sigterm = 15_c_int
         type(c_funptr) :: before
 
         before = c_signal(sigint, c_funloc(note_interrupt))
@@ -97,10 +153,10 @@ contains
     !> A second signal ends the program at once.
     subroutine note_interrupt(number) bind(C)
         integer(c_int), value, intent(in) :: number
-        type(c_funptr) :: before
+        integer(c_int), parameter :: by_signal = 128_c_int   !! as shells tell it
 
+        if (was_interrupted) call c_end(by_signal + number)
         was_interrupted = .true.
-        before = c_signal(number, c_null_funptr)   ! SIG_DFL
     end subroutine note_interrupt
 
     function interrupted() result(yes)

@@ -1,13 +1,15 @@
 !> The verb check: reads and validates an input of any verb, and runs nothing.
 module check
-    use, intrinsic :: iso_fortran_env, only : output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use namelist_input, only : namelist_file
+    use platform, only : report
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
     use run_reader, only : read_settings
     use run_settings, only : settings
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
+    use table_size, only : check_table_size, expected_bytes, gigabyte
     use verb_common, only : exit_bad_input, exit_done, has_faults, is_readable, verb_of
     implicit none
     private
@@ -26,7 +28,9 @@ contains
         type(sweep_plan) :: plan
         type(settings) :: run
         character(len=:), allocatable :: verb
-        character(len=60) :: extent
+        real(dp), parameter :: worth_telling = 0.1_dp   !! [GB]
+        character(len=:), allocatable :: problem
+        character(len=80) :: extent, size_text
 
         exit_status = exit_bad_input
         if (.not. is_readable(input, file)) return
@@ -45,8 +49,17 @@ contains
             if (has_faults(file)) return
             extent = 'adaptive steps'
             if (.not. run%adaptive) write (extent, '(i0, a)') run%n_steps, ' steps'
+            size_text = ''
+            if (expected_bytes(run) > worth_telling * gigabyte) write (size_text, '(a, f0.2, a)') &
+                ', tables of about ', expected_bytes(run) / gigabyte, ' GB'
+            extent = trim(extent) // size_text
+            call check_table_size(run, problem)
+            if (len(problem) > 0) then
+                write (error_unit, '(3a)') input, ': ', problem
+                return
+            end if
         end select
-        write (output_unit, '(5a)') input, ': valid, ', trim(extent), ', for stickslip ', verb
+        write (report, '(5a)') input, ': valid, ', trim(extent), ', for stickslip ', verb
         exit_status = exit_done
     end subroutine check_input
 

@@ -1,7 +1,8 @@
 !> The command line: what the user asks for.
 module command_line
-    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : error_unit
     use friction_mod, only : friction_version
+    use platform, only : report
     implicit none
     private
 
@@ -144,14 +145,14 @@ contains
     end function stem_of
 
     subroutine print_version()
-        write (output_unit, '(2a)') 'stickslip ', friction_version
+        write (report, '(2a)') 'stickslip ', friction_version
     end subroutine print_version
 
     !> To standard output on request, to standard error after a mistake.
     subroutine print_help(to_error)
         logical, intent(in) :: to_error
 
-        write (merge(error_unit, output_unit, to_error), '(a)') &
+        write (merge(error_unit, report, to_error), '(a)') &
             'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '                     [--resume] [--verify]', &
             '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &

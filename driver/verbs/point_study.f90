@@ -1,11 +1,12 @@
 !> The verb point: takes one contact point along its path, and reports.
 module point_study
-    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use command_line, only : command
     use friction_mod, only : friction_message, statev_dissipation, statev_slip
     use law_facts, only : internal_variable
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file
+    use platform, only : report
     use point_recorder, only : point_csv
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
@@ -161,32 +162,32 @@ contains
         real(dp) :: dissipated
 
         dissipated = point%statev(statev_dissipation)
-        write (output_unit, '(a, i0, a, es12.5, a)') 'increments         ', result%increments, &
+        write (report, '(a, i0, a, es12.5, a)') 'increments         ', result%increments, &
             ' to time ', result%time, ' [T]'
-        write (output_unit, '(a, i0, a, i0)') 'Newton iterations  ', result%iterations, &
+        write (report, '(a, i0, a, i0)') 'Newton iterations  ', result%iterations, &
             ', most in an increment ', result%most_iterations
-        if (result%cuts > 0) write (output_unit, '(a, i0, a)') 'cuts               ', &
+        if (result%cuts > 0) write (report, '(a, i0, a)') 'cuts               ', &
             result%cuts, ' times an increment or a part of it was halved'
-        if (result%snap_backs > 0) write (output_unit, '(a, i0, a)') 'snap-back          ', &
+        if (result%snap_backs > 0) write (report, '(a, i0, a)') 'snap-back          ', &
             result%snap_backs, &
             ' increments saw several equilibria: take more steps or a larger alpha_t'
         call print_peak('largest pressure   ', result%pressure)
         call print_peak('largest shear      ', result%shear)
-        write (output_unit, '(a, es14.6, a)') 'slip               ', point%statev(statev_slip), &
+        write (report, '(a, es14.6, a)') 'slip               ', point%statev(statev_slip), &
             ' [L]'
-        write (output_unit, '(a, es14.6, a)') 'work               ', point%work, ' [F/L] ='
-        write (output_unit, '(a, es14.6)') '  stored           ', point%stored()
-        write (output_unit, '(a, es14.6)') '  dissipated       ', dissipated
-        write (output_unit, '(a, es14.6)') '  unbalanced       ', &
+        write (report, '(a, es14.6, a)') 'work               ', point%work, ' [F/L] ='
+        write (report, '(a, es14.6)') '  stored           ', point%stored()
+        write (report, '(a, es14.6)') '  dissipated       ', dissipated
+        write (report, '(a, es14.6)') '  unbalanced       ', &
             point%work - point%stored() - dissipated
-        write (output_unit, '(2a)') 'table              ', table
+        write (report, '(2a)') 'table              ', table
     end subroutine print_summary
 
     subroutine print_peak(title, highest)
         character(len=*), intent(in) :: title
         type(peak), intent(in) :: highest
 
-        write (output_unit, '(a, es14.6, a, es12.5)') title, highest%value, ' [F/L^2] at time ', &
+        write (report, '(a, es14.6, a, es12.5)') title, highest%value, ' [F/L^2] at time ', &
             highest%time
     end subroutine print_peak
 

@@ -14,6 +14,7 @@ module study
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
     use summary, only : print_event_times, print_summary, print_warnings
+    use table_size, only : check_table_size
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
         has_faults, is_for, is_readable, tell_failure
     implicit none
@@ -51,6 +52,11 @@ contains
         if (exit_status /= exit_done) return
 
         exit_status = exit_bad_input
+        call check_table_size(run, problem)
+        if (len(problem) > 0) then
+            write (error_unit, '(3a)') wanted%input, ': ', problem
+            return
+        end if
         base = wanted%output // '/' // wanted%stem
         if (.not. directory_is_ready(wanted%output)) return
         call start_run(run, live)

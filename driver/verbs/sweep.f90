@@ -1,12 +1,12 @@
 !> The verb `sweep`: runs the input with every combination of the values of one or two keys, as many
 !> at a time as wanted, and tabulates what each run has come to.
 module sweep
-    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use child_process, only : child, wait_for_one
     use command_line, only : command
     use friction_mod, only : friction_version
     use namelist_input, only : namelist_file
-    use platform, only : cores, make_directory, rename_file
+    use platform, only : cores, make_directory, rename_file, report
     use progress_bar, only : progress
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
@@ -236,10 +236,10 @@ contains
         character(len=*), intent(in) :: base
         integer, intent(in) :: combinations, found, failures
 
-        write (output_unit, '(a, 3(i0, a))') 'combinations       ', combinations, ': ', &
+        write (report, '(a, 3(i0, a))') 'combinations       ', combinations, ': ', &
             combinations - found, ' run now, ', found, ' taken from the journal'
-        write (output_unit, '(a, i0)') 'failed             ', failures
-        write (output_unit, '(3a)') 'table              ', base, '.csv'
+        write (report, '(a, i0)') 'failed             ', failures
+        write (report, '(3a)') 'table              ', base, '.csv'
     end subroutine print_summary
 
 end module sweep

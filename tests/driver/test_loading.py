@@ -8,7 +8,7 @@ from test_program import Program, law_namelist, namelist
 class Columns(Program):
     def run_columns(self, text):
         result = self.run_text(text, '--no-plot')
-        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assert_done(result)
         rows = self.rows('case_out/case.csv')
         return {key: [float(row[key]) for row in rows] for key in rows[0]}
 

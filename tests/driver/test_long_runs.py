@@ -1,4 +1,5 @@
 """Runs that stop before their end, and go on: checkpoints, --resume, interrupts; and --verify."""
+import os
 import random
 import signal
 import subprocess
@@ -87,6 +88,48 @@ class StopAndGo(LongRun):
         self.assertTrue((self.folder / 'case_out/case.checkpoint').exists())
         lines = (self.folder / 'case_out/case.csv').read_text().splitlines()
         self.assertEqual({len(line.split(',')) for line in lines}, {11})
+
+    def test_an_interrupted_run_draws_no_picture(self):
+        (self.folder / 'case.nml').write_text(FIXED.replace('t_end = 40', 't_end = 4e4'))
+        process = subprocess.Popen([PROGRAM, 'run', 'case.nml'], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        self.wait_for('case_out/case.csv', 10000)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertFalse((self.folder / 'case_out/case.gp').exists())
+
+    def slow_gnuplot(self):
+        """A gnuplot that never ends; tells its process number."""
+        tool = self.folder / 'tools/gnuplot'
+        tool.parent.mkdir()
+        tool.write_text('#!/bin/sh\necho $$ >../started\nexec sleep 1000\n')
+        tool.chmod(0o755)
+        (self.folder / 'case.nml').write_text(namelist({('time', 't_end'): '0.1'}))
+        return subprocess.Popen([PROGRAM, 'run', 'case.nml'], cwd=self.folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True,
+                                env={**os.environ, 'PATH': f"{tool.parent}:{os.environ['PATH']}"})
+
+    def test_a_signal_ends_gnuplot_and_the_program_with_it(self):
+        process = self.slow_gnuplot()
+        self.wait_for('started', 2)
+        process.send_signal(signal.SIGTERM)
+        errors = process.communicate(timeout=20)[1]
+        self.assertEqual(process.returncode, 0)   # the run is done, its picture is not
+        self.assertIn('gnuplot was stopped', errors)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int((self.folder / 'started').read_text()), 0)
+
+    def test_a_second_signal_ends_at_once(self):
+        (self.folder / 'case.nml').write_text(FIXED.replace('t_end = 40', 't_end = 4e4'))
+        process = self.start()
+        self.wait_for('case_out/case.csv', 100)
+        process.send_signal(signal.SIGSTOP)   # both signals wait until it goes on
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGCONT)
+        process.communicate(timeout=20)
+        self.assertIn(process.returncode, (128 + signal.SIGTERM, 128 + signal.SIGINT))
 
     def test_resuming_what_cannot_be_resumed_is_refused(self):
         text = FIXED.replace('t_end = 40', 't_end = 4e4')

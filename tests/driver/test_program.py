@@ -57,6 +57,11 @@ class Program(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
+    def assert_done(self, result):
+        """The run came to its end; warnings are other tests' matter."""
+        self.assertEqual((result.returncode, [line for line in result.stderr.splitlines() if ': warning: ' not in line]),
+                         (0, []))
+
     def run_program(self, *arguments, **options):
         return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
                               errors='replace', capture_output=True, timeout=120, check=False,
@@ -119,7 +124,7 @@ class GoodInput(Program):
         for alpha_t in ('1e6', '1e9'):
             result = self.run_text(namelist({('friction', 'alpha_t'): alpha_t, ('slider', 'damping'): '0',
                                              ('time', 't_end'): '5'}), '--no-plot')
-            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assert_done(result)
             onsets.append(float(self.rows('case_out/case_events.csv')[0]['onset']))
         self.assertLess(abs(onsets[0] - onsets[1]), 1e-5)
 
@@ -209,7 +214,7 @@ class Laws(Program):
         """Rows of a run in which the block comes to slide, as numbers."""
         text = law_namelist(law, **changes).replace('t_end = 0.1', 't_end = 9')
         result = self.run_text(text, '--no-plot')
-        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assert_done(result)
         rows = [{key: float(value) for key, value in row.items()}
                 for row in self.rows('case_out/case.csv')]
         self.assertGreater(rows[-1]['slip'], 0.5)
@@ -450,6 +455,40 @@ class FailedRun(Program):
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r'the run failed at time .*, step \d+: .* Give it a mass')
         self.assertGreater(len(self.rows('case_out/case.csv')), 5)
+
+    def test_standard_output_that_cannot_be_written_is_a_failure(self):
+        (self.folder / 'case.nml').write_text(namelist({('time', 't_end'): '0.1'}))
+        for arguments in (['run', 'case.nml', '--no-plot'], ['check', 'case.nml'], ['--version'], ['--help']):
+            with open('/dev/full', 'w', encoding='ascii') as full:
+                result = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
+                                        text=True, check=False)
+            self.assertEqual(result.returncode, 1, arguments)
+            self.assertIn('standard output cannot be written', result.stderr)
+        self.assertGreater(len(self.rows('case_out/case.csv')), 50)   # the results are there all the same
+
+    def test_tables_too_large_are_refused_before_the_run_unless_allowed(self):
+        long = {('time', 't_end'): '1e5', ('time', 'dt'): '1e-4'}
+        result = self.run_text(namelist(long), '--no-plot')
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, r'&output table_limit: the tables are going to take 2\.64E\+02 GB, more than 1\.00E\+01')
+        self.assertEqual(self.run_text(namelist(long), verb='check').returncode, 2)
+        allowed = self.run_text(namelist({**long, ('output', 'table_limit'): '300'}), verb='check')
+        self.assertEqual((allowed.returncode, allowed.stderr), (0, ''))
+        self.assertIn('tables of about 264.', allowed.stdout)
+        self.assertEqual(self.run_text(namelist({**long, ('output', 'interval'): '1000'}), verb='check').returncode, 0)
+
+    def test_adaptive_steps_stop_at_the_limit_and_can_be_resumed(self):
+        text = namelist({('time', 't_end'): '12', ('time', 'rtol'): '1e-5'}, [('time', 'dt')])
+        self.assertEqual(self.run_text(text, '--no-plot', '--output', 'whole').returncode, 0)
+        result = self.run_text(text.replace('&time', '&output table_limit = 2e-4 /\n&time'), '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('as large as &output table_limit', result.stderr)
+        result = self.run_program('run', 'case.nml', '--no-plot', '--resume')   # still too small
+        self.assertEqual(result.returncode, 1)
+        (self.folder / 'case.nml').write_text(text.replace('&time', '&output table_limit = 1 /\n&time'))
+        result = self.run_program('run', 'case.nml', '--no-plot', '--resume')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), (self.folder / 'whole/case.csv').read_bytes())
 
     def test_a_full_disk_is_a_failed_run(self):
         small = self.folder / 'case_out'

@@ -86,7 +86,7 @@ class Warnings(Program):
         self.assertEqual([row['warnings'] for row in rows], ['undamped_contact', ''])
 
     def test_the_inputs_of_the_project_have_none(self):
-        for name in ('stick_slip', 'slow_steady', 'velocity_steps', 'adaptive', 'from_file'):
+        for name in ('stick_slip', 'slow_steady', 'velocity_steps', 'adaptive', 'oscillating_normal', 'from_file'):
             (self.folder / 'from_file.csv').write_text((INPUTS / 'from_file.csv').read_text())
             self.assertEqual(self.warnings((INPUTS / f'{name}.nml').read_text()), [], name)
 

@@ -1,0 +1,48 @@
+!> How much room on disk the tables of a run will take.
+module table_size
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use field_file, only : field_record_bytes
+    use run_rows, only : n_series
+    use run_settings, only : settings
+    implicit none
+    private
+
+    public :: check_table_size, expected_bytes
+
+    real(dp), parameter, public :: gigabyte = 1.0e9_dp   !! [bytes]
+
+contains
+
+    !> As far as it is known before the run: of adaptive steps nobody knows how many there will be.
+    pure function expected_bytes(run) result(bytes)
+        type(settings), intent(in) :: run
+        real(dp) :: bytes
+        real(dp), parameter :: number = 24.0_dp   !! bytes of one with its comma
+        real(dp) :: rows
+
+        rows = 1.0_dp
+        if (run%every > 0.0_dp) then
+            rows = run%t_end / run%every
+        else if (.not. run%adaptive) then
+            rows = real(run%n_steps, dp) / run%interval
+        end if
+        bytes = rows * number * n_series
+        if (run%fields > 0 .and. .not. run%adaptive) bytes = bytes + real(run%n_steps, dp) &
+            / run%fields * real(field_record_bytes(run%chain%n_blocks), dp)
+    end function expected_bytes
+
+    !> `problem` is empty, or says that the tables are going to be larger than they may.
+    subroutine check_table_size(run, problem)
+        type(settings), intent(in) :: run
+        character(len=:), allocatable, intent(out) :: problem
+        character(len=200) :: text
+
+        problem = ''
+        if (expected_bytes(run) <= run%table_limit * gigabyte) return
+        write (text, '(a, es9.2, a, es9.2, a)') '&output table_limit: the tables are going to ' &
+            // 'take', expected_bytes(run) / gigabyte, ' GB, more than', run%table_limit, &
+            ' GB: choose a larger interval (or every, fields), or raise table_limit'
+        problem = trim(text)
+    end subroutine check_table_size
+
+end module table_size
