@@ -98,7 +98,7 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / 'hysteresis.png').exists())
 
     def test_everything_a_host_needs_is_installed(self):
-        for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'friction.h', 'friction_mod.mod',
+        for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'libstickslip_mgis.so', 'friction.h', 'friction_mod.mod',
                      'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90', 'stickslip.pc', 'stickslip-fortran.pc',
                      'friction_interface.f90'):
             self.assertEqual(len(list(self.prefix.rglob(name))), 1, name)

@@ -28,7 +28,9 @@ def exported(library):
 
 
 def entries(library):
-    """The symbols that a library is there for."""
+    """The symbols that a library is there for; behaviours of MFront have names in front of theirs."""
+    if library.name == 'libstickslip_mgis.so':
+        return {name for name in exported(library) if re.match('StickSlip[A-Z]', name)} | {'StickSlipCoulomb_Tridimensional'}
     return declared_functions() if library.name.startswith('libstickslip.so') else {'umat_'}
 
 

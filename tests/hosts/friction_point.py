@@ -32,6 +32,7 @@ class FrictionPoint:
                 ctypes.c_int, Numbers, ctypes.c_double, ctypes.c_int, Numbers, ctypes.c_int, Numbers, Numbers, Numbers]
         self.props = (ctypes.c_double * len(props))(*props)
         self.statev = (ctypes.c_double * 8)()
+        self.tangent = []   # of the last update, column by column
 
     def update(self, du, dt):
         """Traction at the end of an increment: normal, then tangential."""
@@ -41,4 +42,5 @@ class FrictionPoint:
                                               self.statev, traction, tangent)
         if status < 0:
             raise RuntimeError(f'friction_update: code {status}')
+        self.tangent = list(tangent)
         return list(traction)
