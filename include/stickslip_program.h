@@ -33,7 +33,7 @@ enum stickslip_outcome {
     STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL */
 };
 
-/* One of the tables of a run: "series", "events", "summary" (one row).
+/* One of the tables of a run: "series", "events", "pieces" (of the programme), "summary" (one row).
  *   rows      receives the number of rows
  *   columns   receives the number of columns
  *   names     receives the names of the columns with commas between them

@@ -2,6 +2,7 @@
 module run_outcome
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
+    use piece_measures, only : friction_range
     use slider_system, only : energy_balance
     implicit none
     private
@@ -32,6 +33,7 @@ module run_outcome
         integer :: cut_events = 0                  !! there, but still under way at the end
         type(energy_balance) :: energy
         type(event_totals), allocatable :: pieces(:)
+        type(friction_range), allocatable :: friction(:)   !! in the pieces
         logical :: interrupted = .false.           !! by the user: the run can be resumed
     end type outcome
 

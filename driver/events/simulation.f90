@@ -155,6 +155,7 @@ contains
         result%rejected = live%steps%rejected
         result%onsets = live%slip_events%onsets
         result%pieces = live%slip_events%pieces
+        result%friction = live%slip_events%friction
         result%peak_velocity = live%slip_events%peak_velocity
         result%chain_events = live%chain_events%ended
         result%largest_moment = live%chain_events%largest_moment

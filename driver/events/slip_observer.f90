@@ -1,10 +1,12 @@
-!> Looks for slip events in a run and adds them up, piece by piece of the programme.
+!> Looks for slip events in a run and adds them up, piece by piece of the programme, with the range
+!> of the friction in each piece.
 module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use friction_mod, only : statev_slip
     use law_facts, only : typical_coefficient
     use loading_programme, only : programme
+    use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
     use run_outcome, only : event_totals
     use run_settings, only : settings
@@ -19,11 +21,15 @@ module slip_observer
         type(programme) :: drive
         real(dp) :: stiffness = 0.0_dp                 !! of the drive spring [F/L]
         type(event_finder) :: finder
+        real(dp) :: area = 1.0_dp                      !! contact area of a block [L^2]
         type(event_totals), allocatable :: pieces(:)
+        type(friction_range), allocatable :: friction(:)   !! in the pieces
+        integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
         procedure :: prepare, see, visit
+        procedure, private :: measure
     end type slip_watch
 
 contains
@@ -39,8 +45,24 @@ contains
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
         call self%finder%give_sense(run%drive%first_velocity())
-        allocate (self%pieces(run%drive%listed), self%onsets(0))
+        self%area = run%area
+        allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
+        self%sense = senses(run%drive)
     end subroutine prepare
+
+    !> In a hold the sense is that of the piece before.
+    pure function senses(drive) result(list)
+        type(programme), intent(in) :: drive
+        integer :: list(drive%listed)
+        integer :: sense, i
+
+        sense = merge(-1, 1, drive%first_velocity() < 0.0_dp)
+        do i = 1, drive%listed
+            if (drive%velocity(i) > 0.0_dp) sense = 1
+            if (drive%velocity(i) < 0.0_dp) sense = -1
+            list(i) = sense
+        end do
+    end function senses
 
     subroutine see(self, old, new, news)
         class(slip_watch), intent(inout) :: self
@@ -56,7 +78,21 @@ contains
             self%onsets = [self%onsets, news%slip_events(k)%onset]
         end do
         self%peak_velocity = max(self%peak_velocity, maxval(abs(new%v)))
+        if (self%drive%listed > 1) call self%measure(old, new)
     end subroutine see
+
+    !> A step belongs to the piece that it ends in, or that ends with it.
+    pure subroutine measure(self, old, new)
+        class(slip_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
+        integer :: i
+
+        if (new%normal <= 0.0_dp) return
+        i = min(self%drive%listed, self%drive%piece(new%time - round_off * (new%time - old%time)))
+        call self%friction(i)%take(self%sense(i) * sum(new%friction) &
+            / (size(new%friction) * self%area * new%normal))
+    end subroutine measure
 
     !> What the finder looks at, as means over the blocks.
     pure function seen(self, state, i) result(now)
@@ -104,6 +140,7 @@ contains
         call self%finder%visit(file)
         do i = 1, size(self%pieces)
             call self%pieces(i)%visit(file)
+            call self%friction(i)%visit(file)
         end do
         call file%visit_list(self%onsets)
         call file%visit(self%peak_velocity)

@@ -1,4 +1,4 @@
-!> Pictures, drawn by gnuplot. Each has a script of its own (output/pictures/*.gp); beside the data
+!> Pictures, drawn by gnuplot. Each has a script of its own (in output/pictures); beside the data
 !> the program leaves that script with the names, units and numbers of the case before it, so that
 !> it can be changed and run again.
 module picture

@@ -7,6 +7,7 @@ module run_in_memory
     use friction_mod, only : friction_null_pointer
     use memory_recorder, only : memory_table, memory_watch
     use namelist_input, only : namelist_file, read_namelist_text
+    use piece_table, only : piece_columns, piece_rows
     use run_observer, only : observer, observer_slot, step_news
     use run_outcome, only : outcome
     use run_reader, only : read_settings
@@ -24,7 +25,7 @@ module run_in_memory
     !> What a run leaves. Texts end with a null character.
     type :: run_result
         type(memory_watch) :: found
-        type(memory_table) :: summary
+        type(memory_table) :: pieces, summary
         character(len=:), allocatable :: faults, failure, warnings
     end type run_result
 
@@ -111,6 +112,7 @@ contains
         type(observer_slot) :: observers(2)
         type(outcome) :: result
         type(run_warning), allocatable :: warnings(:)
+        real(dp), allocatable :: rows(:, :)
         integer :: i
 
         ! gfortran (12) keeps the lengths of some functions' results in static memory, and reading
@@ -132,6 +134,11 @@ contains
         call find_warnings(run, result, warnings)
         do i = size(warnings), 1, -1
             this%warnings = trim(warnings(i)%text) // new_line('a') // this%warnings
+        end do
+        call this%pieces%start(piece_columns)
+        rows = piece_rows(run, result)
+        do i = 1, size(rows, 2)
+            call this%pieces%add(rows(:, i))
         end do
         call this%summary%start(summary_columns)
         call this%summary%add(summary_row(run, result))
@@ -192,6 +199,8 @@ contains
             call show(this%found%series, rows, columns, names, values)
         case ('events')
             call show(this%found%events, rows, columns, names, values)
+        case ('pieces')
+            call show(this%pieces, rows, columns, names, values)
         case ('summary')
             call show(this%summary, rows, columns, names, values)
         case default   ! none

@@ -4,6 +4,7 @@ module study
     use checkpoint, only : checkpoint_writer, read_checkpoint
     use command_line, only : command
     use namelist_input, only : namelist_file
+    use piece_table, only : write_pieces
     use platform, only : remove_file, seconds, watch_for_interrupts
     use progress_observer, only : progress_watch
     use recorder, only : csv_recorder
@@ -101,6 +102,7 @@ contains
         type(checkpoint_writer), target :: checkpoints
         type(progress_watch), target :: bar
         type(observer_slot) :: observers(3)
+        logical :: written
 
         checkpoints%name = base // '.checkpoint'
         checkpoints%run => run
@@ -112,6 +114,9 @@ contains
         observers(2)%it => bar
         observers(3)%it => checkpoints
         call simulate(live, observers, result)
+        call write_pieces(base // '_pieces.csv', run, result, written)
+        if (.not. written .and. len(result%failure) == 0) result%failure = &
+            'at its end: cannot write the table of pieces (disk full?)'
     end subroutine watched_run
 
     subroutine draw_pictures(wanted, run, file, result)

@@ -41,7 +41,7 @@ class Output(NamedTuple):
     reports: dict[str, str]    #: 'faults', 'failure', 'warnings'; empty texts where there is none
 
 
-TABLES = ('series', 'events', 'summary')
+TABLES = ('series', 'events', 'pieces', 'summary')
 REPORTS = ('faults', 'failure', 'warnings')
 
 

@@ -33,6 +33,7 @@ class Run:
 
     table: pandas.DataFrame            #: time series; row 0 is the initial state
     events: pandas.DataFrame           #: one row a slip event
+    pieces: pandas.DataFrame           #: one row a piece of the programme: what is read off velocity steps and holds
     summary: dict[str, float]          #: counts, means, energies; NaN for means of nothing
     warnings: list[str]
 
@@ -80,7 +81,8 @@ def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
         raise InputError(output.reports['faults'].rstrip())
     frames = {key: pandas.DataFrame(table.values, columns=table.names) for key, table in output.tables.items()}
     told = output.reports['warnings'].splitlines()
-    result = Run(frames['series'], frames['events'], {key: float(value[0]) for key, value in frames['summary'].items()}, told)
+    result = Run(frames['series'], frames['events'], frames['pieces'],
+                 {key: float(value[0]) for key, value in frames['summary'].items()}, told)
     for warning in told:
         python_warnings.warn(warning, stacklevel=2)
     if output.status == _program.FAILED:

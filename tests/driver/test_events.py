@@ -12,7 +12,7 @@ RATE_AND_STATE = """&friction law='rate_and_state' alpha_n=1.0 alpha_t=1.0 a=A b
 """
 
 
-class Events(Program):
+class EventsOfRuns(Program):
     def events(self, text, stem='case'):
         result = self.run_text(text, '--no-plot')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
@@ -28,6 +28,8 @@ class Events(Program):
             for key in a:
                 self.assertTrue(a[key] == b[key] or math.isnan(a[key]) and math.isnan(b[key]), (key, a, b))
 
+
+class Events(EventsOfRuns):
     def test_a_block_pulled_the_other_way_has_the_same_events(self):
         for steps in ('dt=1e-3', 'rtol=1e-6'):
             tables = [self.events(BLOCK + f'&drive velocity={v} / &time t_end=30, {steps} /') for v in (1, -1)]
@@ -121,6 +123,116 @@ class Events(Program):
     def test_bad_keys_of_events(self):
         self.refused(namelist({('events', 'drop'): '0', ('events', 'slip_rate'): '-1', ('events', 'fall'): '1'}),
                      '&events drop = 0: must be > 0', '&events slip_rate = -1: must be > 0', '&events fall: unknown key')
+
+
+class Pieces(Program):
+    A, B, D_C, STIFFNESS, SPRINGS = 0.01, 0.014, 10.0, 0.05, 10.0
+
+    def pieces(self, drive, t_end, stiffness=STIFFNESS, sign=1, step='dt=0.05'):
+        """The table of the pieces; friction is 0.75 in steady sliding at 1, on a spring of the stiffness given."""
+        velocities = ', '.join(str(sign * v) for v, _ in drive)
+        durations = ', '.join(str(t) for _, t in drive)
+        text = (f"&friction law='rate_and_state' alpha_n=1.0 alpha_t={self.SPRINGS} a={self.A} b={self.B} d_c={self.D_C} v0=1. "
+                f"f0=0.75 theta_0={self.D_C} / &slider mass=0.0 stiffness={stiffness} damping=2.0e-5 normal_traction=1.0 / "
+                f'&drive velocity={velocities}, duration={durations} / &initial mu={sign * 0.75} / &time t_end={t_end}, {step} /')
+        result = self.run_text(text.replace(f'mu={-0.75}', 'mu=0'), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        return [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_pieces.csv')]
+
+    def friction_by_runge_kutta(self, drive, stiffness, step=2e-3):
+        """Peak, least and last friction in each piece: friction law and spring as two ordinary differential equations."""
+        k = 1 / (1 / stiffness + 1 / self.SPRINGS)
+
+        def rates(mu, theta, velocity):
+            v = math.exp((mu - 0.75 - self.B * math.log(theta / self.D_C)) / self.A)
+            return k * (velocity - v), 1 - v * theta / self.D_C
+
+        mu, theta, table = 0.75, self.D_C, []
+        for velocity, duration in drive:
+            seen = []
+            for _ in range(round(duration / step)):
+                a1, b1 = rates(mu, theta, velocity)
+                a2, b2 = rates(mu + step / 2 * a1, theta + step / 2 * b1, velocity)
+                a3, b3 = rates(mu + step / 2 * a2, theta + step / 2 * b2, velocity)
+                a4, b4 = rates(mu + step * a3, theta + step * b3, velocity)
+                mu += step / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+                theta += step / 6 * (b1 + 2 * b2 + 2 * b3 + b4)
+                seen.append(mu)
+            table.append((max(seen), min(seen), mu))
+        return table
+
+    def test_velocity_steps_tell_direct_and_evolution_effect(self):
+        drive = [(1, 20), (10, 40), (1, 200)]
+        table = self.pieces(drive, 260, step='dt=5e-3')
+        self.assertEqual([(row['start'], row['end'], row['drive_velocity'], row['normal_traction']) for row in table],
+                         [(0, 20, 1, 1), (20, 60, 10, 1), (60, 260, 1, 1)])
+        for row, (peak, least, last) in zip(table, self.friction_by_runge_kutta(drive, self.STIFFNESS)):
+            # the update is of first order: up to half of a step, 5e-3, times the loading rate K (10 - 1) = 0.45
+            self.assertAlmostEqual(row['peak_friction'], peak, delta=1.1e-3)
+            self.assertAlmostEqual(row['least_friction'], least, delta=1.1e-3)
+            self.assertAlmostEqual(row['last_friction'], last, delta=1e-5)
+        up, down = table[1:]
+        self.assertTrue(math.isnan(table[0]['direct_effect']))
+        for row, r in ((up, 10), (down, 0.1)):
+            self.assertAlmostEqual(row['a_minus_b'], self.A - self.B, delta=1e-5)
+            self.assertAlmostEqual(row['steady_change'], (self.A - self.B) * math.log(r), delta=2e-5)
+            self.assertAlmostEqual(row['direct_effect'] - row['evolution_effect'], row['steady_change'], delta=1e-12)
+            self.assertTrue(math.isnan(row['healing']))
+        self.assertEqual(up['direct_effect'], up['peak_friction'] - table[0]['last_friction'])
+        self.assertEqual(down['direct_effect'], down['least_friction'] - up['last_friction'])
+
+    def test_a_stiff_spring_shows_the_constants_of_the_law(self):
+        up = self.pieces([(1, 1), (10, 20)], 21, stiffness=10, step='dt=1e-3')[1]
+        self.assertAlmostEqual(up['direct_effect'], self.A * math.log(10), delta=0.02 * self.A)
+        self.assertAlmostEqual(up['evolution_effect'], self.B * math.log(10), delta=0.02 * self.B)
+
+    def test_holds_tell_healing(self):
+        drive = [(1, 20), (0, 10), (1, 100), (0, 100), (1, 100)]
+        table = self.pieces(drive, 330, step='dt=5e-3')
+        expected = self.friction_by_runge_kutta(drive, self.STIFFNESS)
+        for i, time in ((2, 10), (4, 100)):
+            self.assertEqual(table[i]['hold_time'], time)
+            self.assertAlmostEqual(table[i]['healing'], expected[i][0] - expected[i - 2][2], delta=1e-4)
+            self.assertGreater(table[i]['healing'], 0.005)
+            self.assertTrue(math.isnan(table[i]['direct_effect']))
+        self.assertTrue(math.isnan(table[1]['healing']))
+        self.assertEqual([row['events'] for row in table], [0] * 5)
+
+    def test_a_mirrored_programme_has_the_same_table(self):
+        drive = [(1, 20), (0, 10), (1, 30), (3, 30), (2, 5)]
+        text = BLOCK.replace('mass=1e-3', 'mass=0').replace('stiffness=1,', 'stiffness=100,').replace('xi=10', 'xi=0.1')
+        tables = []
+        for sign in (1, -1):
+            result = self.run_text(text + '&drive velocity=' + ', '.join(str(sign * 0.1 * v) for v, _ in drive) + ' duration='
+                                   + ', '.join(str(t) for _, t in drive) + ' / &time t_end=95, dt=1e-2 /', '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            tables.append(self.rows('case_out/case_pieces.csv'))
+        for there, back in zip(*tables):
+            self.assertEqual(float(there.pop('drive_velocity')), -float(back.pop('drive_velocity')))
+            self.assertEqual(there, back)
+
+    def test_events_are_booked_in_their_pieces_and_leave_no_steady_value(self):
+        result = self.run_text((INPUTS / 'velocity_steps.nml').read_text(), '--no-plot')
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        table = [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_pieces.csv')]
+        events = [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_events.csv')]
+        self.assertEqual(len(table), 5)
+        self.assertGreater(table[0]['events'], 4)
+        for row in table:
+            own = [event for event in events if row['start'] <= event['onset'] < row['end']]
+            self.assertEqual(row['events'], len(own))
+            if own:
+                self.assertAlmostEqual(row['stress_drop'], sum(event['stress_drop'] for event in own) / len(own), delta=1e-15)
+                self.assertEqual(row['peak_velocity'], max(event['peak_velocity'] for event in own))
+            self.assertTrue(math.isnan(row['direct_effect']))
+            self.assertTrue(0.2 < row['peak_friction'] < 0.41)   # from mu_k = 0.2 to mu_s = 0.4
+
+    def test_one_piece_has_no_table(self):
+        self.run_text(namelist(), '--no-plot')
+        self.assertFalse((self.folder / 'case_out/case_pieces.csv').exists())
+
+    def test_pieces_that_were_not_reached_are_not_in_the_table(self):
+        self.assertEqual(len(self.pieces([(1, 5), (2, 5), (3, 5)], 8)), 2)
 
 
 if __name__ == '__main__':

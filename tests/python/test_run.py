@@ -47,7 +47,9 @@ class Run(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 subprocess.run([ROOT / 'build/release/driver/stickslip', 'run', path, '--output', folder, '--no-plot',
                                 '--quiet'], check=True, capture_output=True)
-                for ending, table in (('', found.table), ('_events', found.events)):
+                for ending, table in (('', found.table), ('_events', found.events), ('_pieces', found.pieces)):
+                    if ending == '_pieces' and len(table) == 1:
+                        continue   # the program writes it for programmes of several pieces
                     lines = pathlib.Path(folder, f'{name}{ending}.csv').read_text().splitlines()
                     self.assertEqual(lines[0], ','.join(table.columns))
                     written = np.array([line.split(',') for line in lines[1:]], float).reshape(-1, len(table.columns))
