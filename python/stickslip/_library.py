@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import pathlib
 import sys
+from typing import NamedTuple
 
 FOLDER = pathlib.Path(__file__).resolve().parent / 'lib'
 
@@ -39,3 +40,52 @@ version: str = library.friction_version().decode()
 def message(status: int) -> str:
     """What a status of the friction routine says, in one line (docs/user_guide.md, Codes)."""
     return library.friction_message(int(status)).decode()
+
+
+class _LawFacts(ctypes.Structure):
+    _fields_ = [('name', ctypes.c_char * 24), ('internal', ctypes.c_char * 16), ('internal_unit', ctypes.c_char * 8),
+                ('has_internal', _int), ('constants', _int)]
+
+
+class _ConstantFacts(ctypes.Structure):
+    _fields_ = [('name', ctypes.c_char * 24), ('unit', ctypes.c_char * 8), ('meaning', ctypes.c_char * 72),
+                ('rule', ctypes.c_char * 104), ('default_text', ctypes.c_char * 24), ('words', ctypes.c_char * 72),
+                ('lower', _double), ('upper', _double), ('optional', _int), ('choice', _int)]
+
+
+class Constant(NamedTuple):
+    """What the library tells about a material constant."""
+
+    name: str
+    words: tuple[str, ...]   #: of a choice: those that stand for 0, 1, ...; else empty
+
+
+library.friction_get_default.argtypes = [_int, _pointer, _int, ctypes.POINTER(_double)]
+library.friction_check.argtypes = [_int, _pointer, _int, ctypes.c_char_p]
+
+
+def constants_of(law: int) -> tuple[Constant, ...]:
+    """The constants of a law after its number, in their order."""
+    facts, constant = _LawFacts(), _ConstantFacts()
+    library.friction_get_law(law, ctypes.byref(facts))
+    found = []
+    for place in range(1, facts.constants):
+        library.friction_get_constant(law, place, ctypes.byref(constant))
+        words = constant.words.decode().replace(',', ' ').split() if constant.choice else []
+        found.append(Constant(constant.name.decode(), tuple(words)))
+    return tuple(found)
+
+
+def default_of(props: list[float]) -> float | None:
+    """The default of the constant that follows those given; None where there is none."""
+    value = _double()
+    known = (_double * len(props))(*props)
+    status = library.friction_get_default(len(props), known, len(props), ctypes.byref(value))
+    return value.value if status == 0 else None
+
+
+def broken_rule(props: _pointer, size: int) -> str:
+    """Which constant breaks which rule; empty if none does."""
+    text = ctypes.create_string_buffer(96)
+    status = library.friction_check(size, props, len(text), text)
+    return '' if status == 0 else text.value.decode() or message(status)

@@ -17,14 +17,6 @@ from . import _library
 
 __all__ = ['Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'StaticKinetic', 'Subloading']
 
-_WORDS = {
-    'scheme': ('backward_euler', 'exact_rate'),
-    'u_of_r': ('logarithm', 'cotangent', 'reciprocal'),
-    'evolution': ('ageing', 'slip'),
-    'direction': ('associated', 'radial'),
-}
-
-
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Law:
     """What all laws share. ``props`` are the constants in the order of the friction routine, read-only."""
@@ -38,43 +30,34 @@ class Law:
 
     number: ClassVar[int]
     name: ClassVar[str]
-    _own: ClassVar[tuple[str, ...]]
 
     def __post_init__(self) -> None:
-        names = ('alpha_n', 'alpha_t', *self._own, 'tau_max', 'mu_ratio', 'direction')
-        props = np.array([self.number, *(self._value(name) for name in names)], float)
+        numbers = [float(self.number)]
+        for constant in _library.constants_of(self.number):
+            numbers.append(self._number(constant, numbers))
+        props = np.array(numbers)
         props.flags.writeable = False
         object.__setattr__(self, 'props', props)
         object.__setattr__(self, '_size', len(props))
         object.__setattr__(self, '_pointer', ctypes.c_void_p(props.ctypes.data))
-        self._check()
+        if broken := _library.broken_rule(self._pointer, self._size):
+            raise ValueError(f'{type(self).__name__}: {broken}')
 
-    def _value(self, name: str) -> float:
+    def _number(self, constant: _library.Constant, before: list[float]) -> float:
         """A constant as the number that the friction routine takes."""
-        value = getattr(self, name)
+        value = getattr(self, constant.name)
         if value is None:
-            value = self._default(name)
-        if name in _WORDS:
-            if value not in _WORDS[name]:
-                raise ValueError(f"{type(self).__name__}: {name} = {value!r}: one of {', '.join(_WORDS[name])}")
-            return float(_WORDS[name].index(value))
-        if isinstance(value, (str, bytes, bool)):
-            raise TypeError(f'{type(self).__name__}: {name} = {value!r} is not a number')
+            value = _library.default_of(before)
+        elif constant.words and isinstance(value, str):
+            if value not in constant.words:
+                raise ValueError(f"{type(self).__name__}: {constant.name} = {value!r}: one of {', '.join(constant.words)}")
+            value = constant.words.index(value)
+        if value is None or isinstance(value, (str, bytes, bool)):
+            raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number')
         try:
             return float(value)
         except (TypeError, ValueError):
-            raise TypeError(f'{type(self).__name__}: {name} = {value!r} is not a number') from None
-
-    def _default(self, name: str) -> float:
-        raise TypeError(f'{type(self).__name__}: {name} is None')
-
-    def _check(self) -> None:
-        """Lets the library look at the constants: an update of a virgin point that does not move."""
-        du, traction, tangent, state = ((ctypes.c_double * size)() for size in (2, 2, 4, 8))
-        status = _library.update_one(2, du, ctypes.c_double(0.0), len(self.props), self._pointer, 8, state, traction,
-                                     tangent)
-        if status < 0:
-            raise ValueError(f'{type(self).__name__}: {_library.message(status)}: {self.constants()}')
+            raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number') from None
 
     def constants(self) -> dict[str, Any]:
         """Names and values of the constants, as keys of the program's group ``&friction``."""
@@ -107,10 +90,6 @@ class Subloading(Law):
 
     number = 1
     name = 'subloading'
-    _own = ('mu_s', 'mu_k', 'kappa', 'xi', 'm', 'mu_0', 'scheme', 'u_of_r')
-
-    def _default(self, name: str) -> float:
-        return self.mu_s if name == 'mu_0' else super()._default(name)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -121,7 +100,6 @@ class Coulomb(Law):
 
     number = 2
     name = 'coulomb'
-    _own = ('mu',)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -137,7 +115,6 @@ class StaticKinetic(Law):
 
     number = 3
     name = 'static_kinetic'
-    _own = ('mu_s', 'mu_k', 'd_c')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -159,13 +136,6 @@ class RateAndState(Law):
 
     number = 4
     name = 'rate_and_state'
-    _own = ('a', 'b', 'd_c', 'v0', 'f0', 'evolution', 'theta_0')
-
-    def _default(self, name: str) -> float:
-        if name != 'theta_0':
-            return super()._default(name)
-        d_c, v0 = self._value('d_c'), self._value('v0')
-        return d_c / v0 if v0 != 0 else float('nan')   # a v0 of 0 is refused anyway
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -181,4 +151,3 @@ class SlipWeakening(Law):
 
     number = 5
     name = 'slip_weakening'
-    _own = ('mu_s', 'mu_k', 'd_c')

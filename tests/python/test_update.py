@@ -1,7 +1,5 @@
 """stickslip.update and stickslip.laws, from the installed package."""
 import dataclasses
-import pathlib
-import re
 import threading
 import unittest
 
@@ -9,7 +7,6 @@ import numpy as np
 
 import stickslip
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 LAWS = {
     'subloading': stickslip.laws.Subloading(alpha_n=1000, alpha_t=800, mu_s=0.45, mu_k=0.25, kappa=8, xi=0.2, m=60),
     'coulomb': stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3),
@@ -129,24 +126,28 @@ class Update(unittest.TestCase):
 
 
 class Laws(unittest.TestCase):
-    def test_constants_stand_where_docs_laws_has_them(self):
-        text = (ROOT / 'docs/laws.md').read_text()
+    def test_every_law_and_constant_of_the_library_has_its_name_here(self):
         for name, law in LAWS.items():
-            self.assertIn(f"| {law.number} | `'{name}'` |", text)
-        section = text[text.index('## 4 Rate and state'):text.index('## 5 Linear')]
-        places = dict(re.findall(r'^\| (\d+)(?:, optional)? \| `(\w+)`', section, re.MULTILINE))
-        law = LAWS['rate_and_state']
-        for place, name in places.items():
-            self.assertEqual(law._own[int(place) - 4], name)
+            constants = stickslip._library.constants_of(law.number)
+            self.assertEqual({constant.name for constant in constants},
+                             {field.name for field in dataclasses.fields(law) if field.init}, name)
+        self.assertEqual(sorted(law.number for law in LAWS.values()),
+                         list(range(1, 1 + stickslip._library.library.friction_law_count())))
+
+    def test_defaults_are_the_library_s(self):
+        self.assertEqual(LAWS['subloading'].props[8], 0.45)      # mu_0 = mu_s
+        self.assertEqual(LAWS['rate_and_state'].props[9], 10)    # theta_0 = d_c/v0
 
     def test_bad_constants_are_refused_in_the_library_s_words(self):
         make = stickslip.laws.Subloading
         good = {'alpha_n': 1, 'alpha_t': 1, 'mu_s': 0.4, 'mu_k': 0.2, 'kappa': 1, 'xi': 1, 'm': 1}
         make(**good)
-        for bad in ({'mu_k': 0.5}, {'alpha_n': 0}, {'m': -1}, {'xi': float('nan')}, {'mu_0': 0.1}, {'tau_max': -1},
+        for bad in ({'mu_k': 0.5}, {'alpha_n': 0}, {'m': -1}, {'mu_0': 0.1}, {'tau_max': -1},
                     {'scheme': 'exact_rate', 'u_of_r': 'cotangent'}):
-            with self.assertRaisesRegex(ValueError, 'Subloading'):
+            with self.assertRaisesRegex(ValueError, 'Subloading: .*' + next(reversed(bad))):
                 make(**{**good, **bad})
+        with self.assertRaisesRegex(ValueError, 'Subloading: .*finite'):
+            make(**{**good, 'xi': float('nan')})
         with self.assertRaisesRegex(ValueError, 'backward_euler, exact_rate'):
             make(**good, scheme='exact')
         for bad in ('0.4', None, [1], True):
