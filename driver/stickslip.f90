@@ -3,6 +3,7 @@ program stickslip
     use, intrinsic :: iso_fortran_env, only : error_unit
     use check, only : check_input
     use command_line, only : command, print_help, print_version, read_command_line
+    use fault_study, only : run_fault_engine
     use platform, only : exit_program, hold_output
     use point_study, only : run_point
     use study, only : run_input
@@ -28,6 +29,8 @@ program stickslip
         call run_point(wanted, exit_status)
     case ('sweep')
         call sweep_input(wanted, exit_status)
+    case ('fault')
+        call run_fault_engine(wanted, exit_status)
     case ('check')
         call check_input(wanted%input, exit_status)
     case ('--version')

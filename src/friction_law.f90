@@ -58,6 +58,8 @@ module friction_law
         real(wp) :: weight = 0.0_wp      !! change of the friction coefficient with a unit of it, or
                                          !! of its logarithm [-]
         real(wp) :: kink = huge(1.0_wp)  !! where the law changes its form
+        real(wp) :: slip_scale = huge(1.0_wp)   !! slip over which friction evolves [L]
+        real(wp) :: weakening = 0.0_wp   !! how fast the coefficient falls with slip, at most [1/L]
     end type law_traits
 
     type, abstract :: law

@@ -1,14 +1,14 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
-    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, &
-        c_null_char, c_null_ptr, c_ptr
+    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, c_loc, &
+        c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     implicit none
     private
 
     public :: cores, exit_program, have_command, hold_output, interrupted, is_directory, &
-        is_terminal, make_directory, remove_file, rename_file, seconds, shell_word, &
-        truncate_file, watch_for_interrupts
+        is_terminal, make_directory, program_beside, remove_file, rename_file, replace_program, &
+        seconds, shell_word, truncate_file, watch_for_interrupts
 
     ! A signal handler can leave its message nowhere else.
     logical, volatile :: was_interrupted = .false.
@@ -18,6 +18,23 @@ module platform
     integer(c_int), parameter :: sigint = 2_c_int, sigterm = 15_c_int
 
     interface
+        function c_execv(path, arguments) result(status) bind(C, name='execv')
+            import :: c_char, c_int, c_ptr
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            type(c_ptr), intent(in) :: arguments(*)
+            integer(c_int) :: status
+        end function c_execv
+
+        function c_readlink(path, buffer, length) result(got) bind(C, name='readlink')
+            import :: c_char, c_size_t
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            character(kind=c_char), intent(inout) :: buffer(*)
+            integer(c_size_t), value, intent(in) :: length
+            integer(c_size_t) :: got   ! ssize_t, as wide and signed here
+        end function c_readlink
+
         function c_isatty(descriptor) result(answer) bind(C, name='isatty')
             import :: c_int
             implicit none
@@ -212,6 +229,51 @@ contains
         ignored = c_mkdir(path // c_null_char, for_all)
         made = c_access(path // '/.' // c_null_char, write_and_search) == 0
     end function make_directory
+
+    !> The path of a program in the directory of this one; its name alone where that is unknown.
+    function program_beside(name) result(path)
+        character(len=*), intent(in) :: name
+        character(len=:), allocatable :: path
+        character(len=4096) :: own
+        integer(c_size_t) :: length
+        integer :: status
+
+        length = c_readlink('/proc/self/exe' // c_null_char, own, len(own, c_size_t))
+        if (length <= 0) then
+            call get_command_argument(0, own, status=status)
+            length = len_trim(own)
+        end if
+        path = own(:index(own(:length), '/', back=.true.)) // name
+    end function program_beside
+
+    !> Runs another program in place of this one, in the same process: under a launcher of many
+    !> processes it is still the one that was launched. Returns only if that program cannot be run.
+    subroutine replace_program(path, arguments)
+        character(len=*), intent(in) :: path
+        character(len=*), intent(in) :: arguments(:)   !! trailing blanks do not count
+        character(kind=c_char), target :: words(len(arguments) + 1, size(arguments))
+        type(c_ptr) :: list(size(arguments) + 2)
+        character(kind=c_char), target :: name(len(path) + 1)
+        integer(c_int) :: ignored
+        integer :: i, j
+
+        do j = 1, len(path)
+            name(j) = path(j:j)
+        end do
+        name(len(path) + 1) = c_null_char
+        list(1) = c_loc(name)
+        do i = 1, size(arguments)
+            do j = 1, len_trim(arguments(i))
+                words(j, i) = arguments(i)(j:j)
+            end do
+            words(len_trim(arguments(i)) + 1, i) = c_null_char
+            list(i + 1) = c_loc(words(:, i))
+        end do
+        list(size(list)) = c_null_ptr
+        flush (output_unit)
+        flush (error_unit)
+        ignored = c_execv(path // c_null_char, list)
+    end subroutine replace_program
 
     !> Gives a file another name; a file that had that name is replaced at once and whole.
     function rename_file(from, to) result(renamed)

@@ -1,6 +1,8 @@
 !> The verb check: reads and validates an input of any verb, and runs nothing.
 module check
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
+    use fault_reader, only : read_fault_plan
+    use fault_settings, only : fault_plan
     use namelist_input, only : namelist_file
     use platform, only : report
     use point_reader, only : read_point_settings
@@ -26,6 +28,7 @@ contains
         type(namelist_file) :: file
         type(point_run) :: path
         type(sweep_plan) :: plan
+        type(fault_plan) :: plane
         type(settings) :: run
         character(len=:), allocatable :: verb
         real(dp), parameter :: worth_telling = 0.1_dp   !! [GB]
@@ -44,6 +47,10 @@ contains
             call read_sweep(file, plan)
             if (has_faults(file)) return
             write (extent, '(i0, a)') size(plan%runs), ' combinations'
+        case ('fault')
+            call read_fault_plan(file, plane)
+            if (has_faults(file)) return
+            write (extent, '(i0, a, i0, a)') plane%nx, ' x ', plane%nz, ' cells'
         case default
             call read_settings(file, run)
             if (has_faults(file)) return

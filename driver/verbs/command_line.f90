@@ -9,7 +9,8 @@ module command_line
     public :: command, print_help, print_version, read_command_line
 
     type :: command
-        character(len=:), allocatable :: verb      !! run, point, sweep, check, --help, --version
+        character(len=:), allocatable :: verb      !! run, point, sweep, fault, check, --help, or
+                                                   !! --version
         character(len=:), allocatable :: input     !! namelist file
         character(len=:), allocatable :: output    !! directory
         character(len=:), allocatable :: stem      !! of the names of the files that a run writes
@@ -31,7 +32,7 @@ contains
         wanted%output = ''
         wanted%verb = argument(1)
         select case (wanted%verb)
-        case ('run', 'point', 'sweep', 'check')
+        case ('run', 'point', 'sweep', 'fault', 'check')
             continue
         case ('--help', '-h', 'help')
             wanted%verb = '--help'
@@ -50,8 +51,10 @@ contains
         if (wanted%verb == '--help') return
         if (len(wanted%problem) > 0) return
         if (len(wanted%input) == 0) wanted%problem = wanted%verb // ' needs an input file'
-        if (wanted%verb /= 'run' .and. (wanted%resume .or. wanted%verify)) wanted%problem = &
-            '--resume and --verify are for run'
+        if (wanted%verb /= 'run' .and. wanted%verify) wanted%problem = '--verify is for run'
+        if (wanted%resume .and. wanted%verb /= 'run' .and. wanted%verb /= 'fault') then
+            wanted%problem = '--resume is for run and fault'
+        end if
         if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
             .or. .not. wanted%plot .or. wanted%resume &
             .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
@@ -151,12 +154,15 @@ contains
     !> To standard output on request, to standard error after a mistake.
     subroutine print_help(to_error)
         logical, intent(in) :: to_error
+        integer :: unit
 
-        write (merge(error_unit, report, to_error), '(a)') &
+        unit = merge(error_unit, report, to_error)
+        write (unit, '(a)') &
             'usage: stickslip run INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '                     [--resume] [--verify]', &
             '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip sweep INPUT.nml [--output DIR] [--no-plot] [--quiet] [--jobs N]', &
+            '       stickslip fault INPUT.nml [--output DIR] [--no-plot] [--quiet] [--resume]', &
             '       stickslip check INPUT.nml', &
             '       stickslip --help | --version', &
             '', &
@@ -167,6 +173,8 @@ contains
             'sweep  runs INPUT.nml with every combination of the values in its group &sweep;', &
             '       writes STEM_sweep.csv, one row a combination, and STEM_sweep.png with its', &
             '       script; what was interrupted continues where it stopped', &
+            'fault  integrates a plane in an elastic medium that slips by itself; under mpirun', &
+            '       on any number of processes; writes STEM_events.csv, _global.csv, stations', &
             'check  reads and validates INPUT.nml, and runs nothing', &
             '', &
             '--output DIR  where to write', &
@@ -175,7 +183,16 @@ contains
             '--jobs N      runs of a sweep at a time (as many as there are cores)', &
             '--resume      goes on from STEM.checkpoint, which an interrupted run left', &
             '--verify      a second run at a tighter tolerance tells the error of event times', &
-            '', &
+            ''
+        call print_keys(unit)
+        write (unit, '(a)') &
+            'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'
+    end subroutine print_help
+
+    subroutine print_keys(unit)
+        integer, intent(in) :: unit
+
+        write (unit, '(a)') &
             'Groups and keys of INPUT.nml, (default), [unit] of force F, length L, time T:', &
             '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
             '             kappa [1/L], xi [1/T], m [1/L], mu_0 (mu_s) [-];', &
@@ -204,8 +221,13 @@ contains
             '             or file = CSV with time and u_ or t_ columns, substeps (1)', &
             'and of sweep, beside the groups of a run (docs/sweeps.md):', &
             '  &sweep     key (''group%key''), values: list; key2, values2: a second key', &
-            '', &
-            'exit status: 0 done; 1 the run failed, what it wrote stays; 2 bad usage or input'
-    end subroutine print_help
+            'and of fault, beside &friction and &time t_end, rtol, scheme (docs/fault.md):', &
+            '  &fault     geometry (''antiplane_half''; ''whole'': with length, nx, poisson),', &
+            '             width [L], nz, shear_modulus, wave_speed, plate_rate [L/T],', &
+            '             normal_traction, initial (''steady''; ''file'': initial_file)', &
+            '  &output    stations [L], seismic_rate (1e-3) [L/T], slip_contours, interval (1),', &
+            '             fields (0), checkpoint (60) [s]', &
+            ''
+    end subroutine print_keys
 
 end module command_line

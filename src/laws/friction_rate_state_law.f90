@@ -432,7 +432,7 @@ contains
         type(law_traits) :: traits
 
         traits = law_traits(onset=onset_gradual, stiff=.true., memory=2, logarithmic=.true., &
-            weight=self%b)
+            weight=self%b, slip_scale=self%d_c, weakening=self%b / self%d_c)
     end function traits
 
     !> X of the law.

@@ -192,7 +192,8 @@ contains
         class(slip_weakening_law), intent(in) :: self
         type(law_traits) :: traits
 
-        traits = law_traits(memory=2, weight=(self%mu_s - self%mu_k) / self%d_c, kink=self%d_c)
+        traits = law_traits(memory=2, weight=(self%mu_s - self%mu_k) / self%d_c, kink=self%d_c, &
+            slip_scale=self%d_c, weakening=(self%mu_s - self%mu_k) / self%d_c)
     end function traits
 
     pure function state_after(self, d) result(state)

@@ -452,7 +452,9 @@ contains
         class(subloading_law), intent(in) :: self
         type(law_traits) :: traits
 
-        traits = law_traits(onset=onset_gradual, memory=1, weight=1.0_wp)
+        traits = law_traits(onset=onset_gradual, memory=1, weight=1.0_wp, &
+            slip_scale=1.0_wp / max(self%kappa, self%m), &
+            weakening=self%kappa * (self%mu_s - self%mu_k))
     end function traits
 
     !> U(R), which tells how fast sliding becomes full.

@@ -1,0 +1,271 @@
+!> Tables of a run of the fault, as CSV, written by the first process: the global series, events,
+!> stations and contours of slip. Rows are the ends of steps.
+module fault_recorder
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use fault_events, only : event_watch, fault_event
+    use fault_problem, only : fault, fault_state
+    use processes, only : team
+    use text_file, only : output_file
+    implicit none
+    private
+
+    public :: recorder
+
+    integer, parameter :: most_depths = 200   !! of a contour
+    character(len=*), parameter :: event_columns = &
+        'onset,duration,peak_slip_rate,largest_slip,mean_slip,potency,first_cell'
+
+    type :: recorder
+        type(output_file) :: global, events, contours
+        type(output_file), allocatable :: stations(:)
+        character(len=:), allocatable :: base    !! of the files' names, with the directory
+        integer, allocatable :: cells(:)         !! of the stations; 0: on another process
+        real(dp) :: next_contour = 0.0_dp        !! time [T]
+        real(dp), allocatable :: slip_before(:), rate_before(:)   !! at the start of the step
+        real(dp) :: time_before = 0.0_dp
+        logical :: writes = .false.              !! this process does
+        logical, private :: draws_contours = .false.
+    contains
+        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes
+        procedure, private :: write_rows, write_contours, write_event
+    end type recorder
+
+contains
+
+    subroutine prepare(self, here, together, base)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        character(len=*), intent(in) :: base
+        integer :: i
+
+        self%base = base
+        self%writes = together%rank == 0
+        associate (plan => here%plan)
+            self%cells = [(here%cell_of(plan%station_x(i), plan%station_z(i)), &
+                i = 1, size(plan%station_z))]
+            self%draws_contours = plan%nx == 1 .and. plan%contours(1) > 0.0_dp
+        end associate
+        allocate (self%stations(size(self%cells)), self%slip_before(here%n), &
+            self%rate_before(here%n))
+    end subroutine prepare
+
+    !> Begins the files of a new run.
+    subroutine create(self, here)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        integer :: i
+
+        if (.not. self%writes) return
+        call self%global%create(self%base // '_global.csv')
+        call self%global%write_line('time,log10_slip_rate,moment_rate')
+        call self%events%create(self%base // '_events.csv')
+        call self%events%write_line(event_columns)
+        do i = 1, size(self%stations)
+            call self%stations(i)%create(station_name(self%base, i))
+            call self%stations(i)%write_line('time,slip,log10_slip_rate,traction,' &
+                // memory_column(here))
+        end do
+        if (.not. self%draws_contours) return
+        call self%contours%create(self%base // '_contours.csv')
+        call self%contours%write_line('time,event,z,slip')
+    end subroutine create
+
+    !> The column of the law's internal variable.
+    pure function memory_column(here) result(name)
+        type(fault), intent(in) :: here
+        character(len=:), allocatable :: name
+
+        name = 'state'
+        if (here%plan%rate_state) name = 'log10_theta'
+    end function memory_column
+
+    function station_name(base, i) result(name)
+        character(len=*), intent(in) :: base
+        integer, intent(in) :: i
+        character(len=:), allocatable :: name
+        character(len=12) :: number
+
+        write (number, '(i0)') i
+        name = base // '_station_' // trim(number) // '.csv'
+    end function station_name
+
+    !> Opens the files where a checkpoint has left them.
+    subroutine go_on(self, bytes)
+        class(recorder), intent(inout) :: self
+        real(dp), intent(in) :: bytes(:)   !! of the files, in the order of `sizes`
+        integer :: i
+
+        if (.not. self%writes) return
+        call self%global%go_on(self%base // '_global.csv', int(bytes(1), int64))
+        call self%events%go_on(self%base // '_events.csv', int(bytes(2), int64))
+        if (self%draws_contours) call self%contours%go_on(self%base // '_contours.csv', &
+            int(bytes(3), int64))
+        do i = 1, size(self%stations)
+            call self%stations(i)%go_on(station_name(self%base, i), int(bytes(3 + i), int64))
+        end do
+    end subroutine go_on
+
+    !> Lengths of the files so far [bytes]; whole numbers.
+    pure function sizes(self) result(bytes)
+        class(recorder), intent(in) :: self
+        real(dp) :: bytes(3 + size(self%stations))
+
+        bytes = real([self%global%bytes, self%events%bytes, self%contours%bytes, &
+            self%stations%bytes], dp)
+    end function sizes
+
+    !> The first row, of the state at the start.
+    subroutine begin(self, here, together, state, watch)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        type(event_watch), intent(in) :: watch
+
+        call self%write_rows(here, together, state, watch)
+        self%next_contour = here%plan%contours(1)
+    end subroutine begin
+
+    !> A step: from `slip_before`, `rate_before`, `time_before` to the state.
+    subroutine see(self, here, together, state, watch, ended)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        type(event_watch), intent(in) :: watch
+        logical, intent(in) :: ended   !! an event has, in this step
+
+        if (mod(state%steps, int(here%plan%interval, int64)) == 0 &
+            .or. state%time >= here%plan%t_end) call self%write_rows(here, together, state, watch)
+        if (ended) call self%write_event(watch%event)
+        if (self%draws_contours) call self%write_contours(here, together, state, watch, ended)
+    end subroutine see
+
+    subroutine write_rows(self, here, together, state, watch)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        type(event_watch), intent(in) :: watch
+        real(dp) :: moment_rate, values(4, size(self%cells)), flat(4 * size(self%cells))
+        integer :: i
+
+        moment_rate = here%plan%shear_modulus * here%plan%cell_area() &
+            * here%part%row_sums(together, state%rate)
+        values = -huge(1.0_dp)
+        do i = 1, size(self%cells)
+            if (self%cells(i) == 0) cycle
+            values(:, i) = [state%slip(self%cells(i)), log10_of(state%rate(self%cells(i))), &
+                state%traction(self%cells(i)), state%memory(self%cells(i))]
+            if (here%plan%rate_state) values(4, i) = values(4, i) / log(10.0_dp)
+        end do
+        flat = reshape(values, [size(flat)])
+        if (size(flat) > 0) call together%largest_of_each(flat)
+        if (.not. self%writes) return
+        call self%global%write_line(row_of([state%time, log10_of(watch%largest_rate), moment_rate]))
+        do i = 1, size(self%cells)
+            call self%stations(i)%write_line(row_of([state%time, flat(4 * i - 3:4 * i)]))
+        end do
+    end subroutine write_rows
+
+    elemental function log10_of(rate) result(number)
+        real(dp), intent(in) :: rate
+        real(dp) :: number
+
+        number = log10(max(abs(rate), 1.0e-300_dp))
+    end function log10_of
+
+    subroutine write_event(self, event)
+        class(recorder), intent(inout) :: self
+        type(fault_event), intent(in) :: event
+        character(len=24) :: number
+
+        if (.not. self%writes) return
+        write (number, '(i0)') event%first_cell
+        call self%events%write_line(row_of([event%onset, event%duration, event%peak_rate, &
+            event%largest_slip, event%mean_slip, event%potency]) // ',' // trim(number))
+    end subroutine write_event
+
+    !> Slip along depth at even times, by cubic interpolation between the ends of the step.
+    subroutine write_contours(self, here, together, state, watch, ended)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        type(event_watch), intent(in) :: watch
+        logical, intent(in) :: ended
+        real(dp) :: dt, u, own(here%n), slip(here%plan%nz)
+        integer :: stride, k
+
+        dt = state%time - self%time_before
+        stride = (here%plan%nz + most_depths - 1) / most_depths
+        if (watch%on .and. watch%event%onset >= self%time_before) self%next_contour = &
+            watch%event%onset
+        do while (self%next_contour <= state%time)
+            u = (self%next_contour - self%time_before) / dt
+            own = self%slip_before + u**2 * (3.0_dp - 2.0_dp * u) * (state%slip &
+                - self%slip_before) + dt * u * (1.0_dp - u) * ((1.0_dp - u) * self%rate_before &
+                - u * state%rate)
+            call together%gather(own, here%part%counts, slip)
+            do k = 1, here%plan%nz, stride
+                if (self%writes) call self%contours%write_line(row_of([self%next_contour, &
+                    merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k)]))
+            end do
+            if (self%writes) call self%contours%write_line('')
+            self%next_contour = self%next_contour + here%plan%contours(merge(2, 1, watch%on))
+        end do
+        if (ended) self%next_contour = here%plan%contours(1) * (1 + aint(state%time &
+            / here%plan%contours(1)))
+    end subroutine write_contours
+
+    !> Numbers with all their digits.
+    pure function row_of(numbers) result(text)
+        real(dp), intent(in) :: numbers(:)
+        character(len=:), allocatable :: text
+        character(len=25 * size(numbers)) :: buffer
+        integer :: i, n
+
+        write (buffer, '(*(es24.16e3, :, ","))') numbers
+        n = 0
+        do i = 1, len(buffer)
+            if (buffer(i:i) == ' ') cycle
+            n = n + 1
+            buffer(n:n) = buffer(i:i)
+        end do
+        text = buffer(:n)
+    end function row_of
+
+    subroutine flush_all(self)
+        class(recorder), intent(inout) :: self
+        integer :: i
+
+        call self%global%flush_lines()
+        call self%events%flush_lines()
+        call self%contours%flush_lines()
+        do i = 1, size(self%stations)
+            call self%stations(i)%flush_lines()
+        end do
+    end subroutine flush_all
+
+    subroutine finish(self)
+        class(recorder), intent(inout) :: self
+        integer :: i
+
+        call self%global%finish()
+        call self%events%finish()
+        call self%contours%finish()
+        do i = 1, size(self%stations)
+            call self%stations(i)%finish()
+        end do
+    end subroutine finish
+
+    function failed(self)
+        class(recorder), intent(in) :: self
+        logical :: failed
+
+        failed = self%global%failed .or. self%events%failed .or. self%contours%failed &
+            .or. any(self%stations%failed)
+    end function failed
+
+end module fault_recorder

@@ -1,0 +1,225 @@
+!> A run of the fault from its start, or from a checkpoint, to its end.
+module fault_run
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64
+    use fault_checkpoint, only : read_checkpoint, write_checkpoint
+    use fault_events, only : event_watch
+    use fault_explicit, only : explicit_steps
+    use fault_problem, only : fault, fault_state
+    use fault_recorder, only : recorder
+    use fault_settings, only : fault_plan
+    use fault_start, only : start_rate_state
+    use platform, only : interrupted, remove_file, report, seconds
+    use processes, only : team
+    use progress_bar, only : progress
+    implicit none
+    private
+
+    public :: run_fault
+
+    integer, parameter :: steps_between_looks = 16   !! at the clock and at interrupts
+    integer, parameter :: own_numbers = 16           !! of a checkpoint's header
+
+    !> All that a run is made of.
+    type :: live_run
+        type(fault) :: here
+        type(fault_state) :: state
+        type(explicit_steps) :: stepper
+        type(event_watch) :: watch
+        type(recorder) :: records
+        character(len=:), allocatable :: base    !! of the files' names, with the directory
+    end type live_run
+
+contains
+
+    !> `problem` is empty unless the run failed or was interrupted; it is the same on all processes.
+    subroutine run_fault(plan, together, base, resume, quiet, problem)
+        type(fault_plan), intent(in) :: plan
+        type(team), intent(inout) :: together
+        character(len=*), intent(in) :: base
+        logical, intent(in) :: resume, quiet
+        character(len=:), allocatable, intent(out) :: problem
+        type(live_run), allocatable :: live
+        real(dp) :: begun, most_slip
+        logical :: sound
+
+        allocate (live)
+        live%base = base
+        begun = seconds()
+        call live%here%create(plan, together)
+        call live%records%prepare(live%here, together, base)
+        call start_rate_state(live%here, together, live%state)
+        call live%watch%start(live%here, together, live%state)
+        problem = ''
+        if (resume) call take_checkpoint(live, together, problem)
+        if (len(problem) > 0) return
+        if (together%rank == 0) call warn(live%here)
+        call live%stepper%start(live%here, together, live%state, sound)
+        if (.not. sound) then
+            problem = 'no slip rate is found for the state at the start'
+            return
+        end if
+        if (.not. resume) then
+            call live%records%create(live%here)
+            live%watch%largest_rate = together%largest(maxval(live%state%rate))
+            call live%records%begin(live%here, together, live%state, live%watch)
+        end if
+        call go(live, together, quiet, problem)
+        call live%records%finish()
+        if (together%any_of(live%records%failed()) .and. len(problem) == 0) then
+            problem = 'cannot write to ' // base // '_*.csv (disk full?)'
+        end if
+        most_slip = together%largest(maxval(live%state%slip))
+        if (together%rank == 0 .and. len(problem) == 0) then
+            call remove_file(base // '.checkpoint')
+            if (.not. quiet) call print_summary(live, most_slip, seconds() - begun)
+        end if
+        call live%here%surroundings%free()
+    end subroutine run_fault
+
+    !> Steps to the end.
+    subroutine go(live, together, quiet, problem)
+        type(live_run), intent(inout) :: live
+        type(team), intent(in) :: together
+        logical, intent(in) :: quiet
+        character(len=:), allocatable, intent(inout) :: problem
+        type(progress) :: bar
+        real(dp) :: last
+        logical :: sound, ended
+
+        associate (plan => live%here%plan, state => live%state, records => live%records)
+            call bar%begin(together%rank == 0 .and. .not. quiet, state%time / plan%t_end)
+            last = seconds()
+            do while (state%time < plan%t_end .and. len(problem) == 0)
+                records%time_before = state%time
+                records%slip_before = state%slip
+                records%rate_before = state%rate
+                call live%stepper%step(live%here, together, state, sound)
+                if (.not. sound) then
+                    problem = 'at time ' // text_of(state%time) // ': no step is short enough'
+                    exit
+                end if
+                call live%watch%see(live%here, together, records%time_before, state, ended)
+                call records%see(live%here, together, state, live%watch, ended)
+                call bar%show(state%time / plan%t_end)
+                if (mod(state%steps, int(steps_between_looks, int64)) == 0) call look(live, &
+                    together, last, problem)
+            end do
+            call bar%clear()
+        end associate
+    end subroutine go
+
+    !> Is it time for a checkpoint, or to stop?
+    subroutine look(live, together, last, problem)
+        type(live_run), intent(inout) :: live
+        type(team), intent(in) :: together
+        real(dp), intent(inout) :: last   !! clock at the last checkpoint
+        character(len=:), allocatable, intent(inout) :: problem
+        logical :: stop_now
+
+        stop_now = together%any_of(interrupted())
+        if (.not. stop_now .and. .not. together%any_of(together%rank == 0 &
+            .and. seconds() - last >= live%here%plan%checkpoint)) return
+        last = seconds()
+        call leave_checkpoint(live, together, problem)
+        if (stop_now .and. len(problem) == 0) problem = &
+            'interrupted; stickslip fault with --resume goes on from here'
+    end subroutine look
+
+    subroutine leave_checkpoint(live, together, problem)
+        type(live_run), intent(inout) :: live
+        type(team), intent(in) :: together
+        character(len=:), allocatable, intent(inout) :: problem
+        real(dp) :: header(own_numbers + size(live%records%sizes()))
+        logical :: done
+
+        call live%records%flush_all()
+        if (together%any_of(live%records%failed())) then
+            problem = 'cannot write to ' // live%base // '_*.csv (disk full?)'
+            return
+        end if
+        associate (state => live%state, watch => live%watch, event => live%watch%event)
+            header = 0.0_dp
+            header(:13) = [state%time, state%dt, real(state%steps, dp), real(state%rejected, dp), &
+                merge(1.0_dp, 0.0_dp, watch%on), real(watch%events, dp), watch%largest_rate, &
+                event%onset, event%peak_rate, real(event%first_cell, dp), &
+                live%records%next_contour, state%error, 0.0_dp]
+            header(own_numbers + 1:) = live%records%sizes()
+            call together%share(header)   ! lengths of files are the first process's
+            call write_checkpoint(live%base // '.checkpoint', together, live%here%part, &
+                live%here%plan%fingerprint, header, reshape([state%slip, state%memory, &
+                watch%slip_before, watch%took_part], [live%here%n, 4]), done)
+        end associate
+        if (.not. done) problem = 'cannot write ' // live%base // '.checkpoint (disk full?)'
+    end subroutine leave_checkpoint
+
+    subroutine take_checkpoint(live, together, problem)
+        type(live_run), intent(inout) :: live
+        type(team), intent(in) :: together
+        character(len=:), allocatable, intent(inout) :: problem
+        real(dp) :: header(own_numbers + size(live%records%sizes())), columns(live%here%n, 4)
+        logical :: failed
+
+        call read_checkpoint(live%base // '.checkpoint', together, live%here%part, &
+            live%here%plan%fingerprint, header, columns, problem)
+        if (len(problem) > 0) return
+        associate (state => live%state, watch => live%watch, event => live%watch%event)
+            state%time = header(1)
+            state%dt = header(2)
+            state%steps = int(header(3), int64)
+            state%rejected = int(header(4), int64)
+            watch%on = header(5) > 0.0_dp
+            watch%events = int(header(6))
+            watch%largest_rate = header(7)
+            event%onset = header(8)
+            event%peak_rate = header(9)
+            event%first_cell = int(header(10), int64)
+            live%records%next_contour = header(11)
+            state%error = header(12)
+            state%slip = columns(:, 1)
+            state%memory = columns(:, 2)
+            watch%slip_before = columns(:, 3)
+            watch%took_part = columns(:, 4)
+        end associate
+        call live%records%go_on(header(own_numbers + 1:))
+        failed = together%any_of(live%records%failed())
+        if (failed) problem = 'the files ' // live%base &
+            // '_*.csv are not those that the checkpoint goes on with'
+    end subroutine take_checkpoint
+
+    !> What makes results doubtful, on standard error.
+    subroutine warn(here)
+        type(fault), intent(in) :: here
+        real(dp), parameter :: least_cells = 3.0_dp
+        real(dp) :: cell
+
+        cell = here%plan%dz()
+        if (here%plan%nx > 1) cell = max(cell, here%plan%dx())
+        if (here%cohesive_length < least_cells * cell) write (error_unit, '(5a, f0.1, a)') &
+            'stickslip: warning: cells of ', text_of(cell), ' do not resolve the cohesive length ' &
+            // 'of ', text_of(here%cohesive_length), ': it takes ', least_cells, ' or more of them'
+    end subroutine warn
+
+    subroutine print_summary(live, most_slip, elapsed)
+        type(live_run), intent(in) :: live
+        real(dp), intent(in) :: most_slip
+        real(dp), intent(in) :: elapsed   !! [s]
+
+        write (report, '(a, i0, a, i0, a)') 'steps          ', live%state%steps, ' (', &
+            live%state%rejected, ' rejected)'
+        write (report, '(a, i0)') 'events         ', live%watch%events
+        write (report, '(2a)') 'largest slip   ', text_of(most_slip)
+        write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
+        write (report, '(3a)') 'results        ', live%base, &
+            '_events.csv, _global.csv and others'
+    end subroutine print_summary
+
+    function text_of(number) result(text)
+        real(dp), intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=24) :: buffer
+
+        write (buffer, '(g0.6)') number
+        text = trim(adjustl(buffer))
+    end function text_of
+
+end module fault_run

@@ -1,0 +1,408 @@
+!> Reads what a run of the fault is told to do: the groups &fault, &friction, &time and &output,
+!> their defaults and rules (docs/fault.md).
+!>
+!> A constant of friction, the normal traction or the initial state may be given as '@file.csv':
+!> columns z, or x and z, and one of the key's name. The constants of each node are read by the
+!> reader of &friction, as if they stood in the input, so that each has its law's rules.
+module fault_reader
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use archive_file, only : mix
+    use csv_table, only : column_request, csv => table, read_table
+    use fault_settings, only : fault_map, fault_plan
+    use friction_mod, only : law_rate_state
+    use law_input, only : read_friction
+    use namelist_input, only : above, any_number, at_least, between, namelist_file
+    use namelist_parser, only : namelist_entry, value_token
+    implicit none
+    private
+
+    public :: is_fault_input, read_fault_plan
+
+    character(len=*), parameter :: group = 'fault'
+
+    !> A quantity that a file gives at nodes.
+    type :: profile
+        character(len=:), allocatable :: group, key   !! where the input names the file
+        type(fault_map) :: map                        !! of one quantity
+    end type profile
+
+contains
+
+    !> Is the input one of the fault?
+    function is_fault_input(file) result(yes)
+        type(namelist_file), intent(inout) :: file
+        logical :: yes
+
+        yes = file%has_group(group)
+    end function is_fault_input
+
+    !> Takes the plan from a file; every fault is left in `file%faults`.
+    subroutine read_fault_plan(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(out) :: plan
+        character(len=8), parameter :: needed(3) = ['fault   ', 'friction', 'time    ']
+        integer :: i
+
+        do i = 1, size(needed)
+            if (.not. file%has_group(trim(needed(i)))) call file%add_fault(0, 'group &' &
+                // trim(needed(i)) // ' is missing')
+        end do
+        call read_surroundings(file, plan)
+        call read_constants(file, plan)
+        call read_initial(file, plan)
+        call read_times(file, plan)
+        call read_output(file, plan)
+        plan%fingerprint = fingerprint_of(file%listing(), plan)
+        call file%refuse_unknown()
+    end subroutine read_fault_plan
+
+    !> Geometry and elasticity.
+    subroutine read_surroundings(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        real(dp), parameter :: most_cells = 2.0e9_dp
+
+        call file%get_choice(group, 'geometry', plan%geometry, ['antiplane_half', &
+            'whole         '], default='antiplane_half')
+        call file%get_integer(group, 'nz', plan%nz, between(2.0_dp, 1.0e8_dp), default=0)
+        call file%require(group, 'nz')
+        call file%get_real(group, 'width', plan%width, above(0.0_dp))
+        call file%get_real(group, 'shear_modulus', plan%shear_modulus, above(0.0_dp))
+        call file%get_real(group, 'wave_speed', plan%wave_speed, above(0.0_dp))
+        call file%get_real(group, 'plate_rate', plan%plate_rate, at_least(0.0_dp))
+        if (plan%geometry == 'antiplane_half') then
+            call file%belongs_elsewhere(group, 'nx', "belongs to geometry = 'whole'")
+            call file%belongs_elsewhere(group, 'length', "belongs to geometry = 'whole'")
+            call file%belongs_elsewhere(group, 'poisson', "belongs to geometry = 'whole'")
+        else
+            call file%get_integer(group, 'nx', plan%nx, between(2.0_dp, 1.0e8_dp), default=0)
+            call file%require(group, 'nx')
+            call file%get_real(group, 'length', plan%length, above(0.0_dp))
+            call file%get_real(group, 'poisson', plan%poisson, between(0.0_dp, 0.5_dp), &
+                default=0.25_dp)
+            if (real(plan%nx, dp) * plan%nz > most_cells) call file%reject(group, 'nx', &
+                'times nz makes more cells than can be counted')
+        end if
+    end subroutine read_surroundings
+
+    ! ---- friction ----------------------------------------------------------------------------
+
+    !> Constants of friction and normal traction, at all nodes that any of them has.
+    subroutine read_constants(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        type(profile), allocatable :: profiles(:)
+        real(dp), allocatable :: x(:), z(:), props(:)
+        real(dp) :: normal
+        integer :: faults_before, i, k
+
+        call take_profiles(file, profiles)
+        faults_before = size(file%faults)
+        call add_springs(file, plan)
+        call join_nodes(profiles, x, z)
+        do k = 1, size(z)
+            do i = 1, size(x)
+                call set_values(file, profiles, x(i), z(k))
+                call read_friction(file, props)
+                call file%get_real(group, 'normal_traction', normal, above(0.0_dp))
+                if (size(file%faults) > faults_before) then
+                    if (size(profiles) > 0) call tell_node(file, x(i), z(k))
+                    return
+                end if
+                if (.not. allocated(plan%constants%values)) then
+                    allocate (plan%constants%values(size(props) + 1, size(x), size(z)))
+                end if
+                plan%constants%values(:, i, k) = [props, normal]
+            end do
+        end do
+        plan%constants%x = x
+        plan%constants%z = z
+        plan%rate_state = nint(props(1)) == law_rate_state
+        plan%explicit = plan%rate_state
+    end subroutine read_constants
+
+    !> Keys whose value is the name of a file.
+    subroutine take_profiles(file, profiles)
+        type(namelist_file), intent(inout) :: file
+        type(profile), allocatable, intent(out) :: profiles(:)
+        type(profile) :: this
+        integer :: i
+        logical :: sound
+
+        allocate (profiles(0))
+        do i = 1, size(file%entries)
+            if (size(file%entries(i)%values) /= 1) cycle
+            if (.not. names_file(file%entries(i)%values(1))) cycle
+            if (file%entries(i)%group /= 'friction' .and. .not. (file%entries(i)%group == group &
+                .and. file%entries(i)%key == 'normal_traction')) cycle
+            this%group = file%entries(i)%group
+            this%key = file%entries(i)%key
+            call read_map(file, this%group, this%key, [this%key], this%map, sound)
+            if (sound) profiles = [profiles, this]
+            file%entries(i)%faulty = .not. sound
+        end do
+    end subroutine take_profiles
+
+    pure function names_file(token) result(yes)
+        type(value_token), intent(in) :: token
+        logical :: yes
+
+        yes = .false.
+        if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
+    end function names_file
+
+    !> The fault's contact springs: any stiff ones do, since slip is told from elastic displacement.
+    subroutine add_springs(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(in) :: plan
+        character(len=7), parameter :: keys(2) = ['alpha_n', 'alpha_t']
+        real(dp), parameter :: stiffer = 1.0e3_dp   !! than the surroundings of a cell
+        type(namelist_entry) :: spring
+        integer :: i
+
+        if (.not. plan%width > 0.0_dp .or. plan%nz < 1) return
+        do i = 1, size(keys)
+            if (file%given('friction', keys(i))) cycle
+            spring%group = 'friction'
+            spring%key = keys(i)
+            allocate (spring%values(1))
+            spring%values(1)%text = number_text(stiffer * max(plan%shear_modulus, tiny(1.0_dp)) &
+                / plan%dz())
+            file%entries = [file%entries, spring]
+            deallocate (spring%values)
+        end do
+    end subroutine add_springs
+
+    !> The constants of one node take the place of the names of files.
+    subroutine set_values(file, profiles, x, z)
+        type(namelist_file), intent(inout) :: file
+        type(profile), intent(in) :: profiles(:)
+        real(dp), intent(in) :: x, z
+        real(dp) :: value(1)
+        integer :: i, j
+
+        do j = 1, size(profiles)
+            value = profiles(j)%map%at(x, z)
+            do i = 1, size(file%entries)
+                if (file%entries(i)%group /= profiles(j)%group &
+                    .or. file%entries(i)%key /= profiles(j)%key) cycle
+                file%entries(i)%values(1)%text = number_text(value(1))
+                file%entries(i)%values(1)%quoted = .false.
+            end do
+        end do
+    end subroutine set_values
+
+    pure function number_text(number) result(text)
+        real(dp), intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=32) :: buffer
+
+        write (buffer, '(es24.16e3)') number
+        text = trim(adjustl(buffer))
+    end function number_text
+
+    subroutine tell_node(file, x, z)
+        type(namelist_file), intent(inout) :: file
+        real(dp), intent(in) :: x, z
+        character(len=80) :: text
+
+        write (text, '(a, g0.6, a, g0.6)') 'the constants of friction at x = ', x, ', z = ', z
+        call file%add_fault(0, trim(text) // ' are refused')
+    end subroutine tell_node
+
+    !> All nodes of all profiles.
+    pure subroutine join_nodes(profiles, x, z)
+        type(profile), intent(in) :: profiles(:)
+        real(dp), allocatable, intent(out) :: x(:), z(:)
+        integer :: i
+
+        x = [real(dp) ::]
+        z = [real(dp) ::]
+        do i = 1, size(profiles)
+            x = joined(x, profiles(i)%map%x)
+            z = joined(z, profiles(i)%map%z)
+        end do
+        if (size(x) == 0) x = [0.0_dp]
+        if (size(z) == 0) z = [0.0_dp]
+    end subroutine join_nodes
+
+    !> Two increasing lists as one, each number once.
+    pure function joined(a, b) result(both)
+        real(dp), intent(in) :: a(:), b(:)
+        real(dp), allocatable :: both(:)
+        integer :: i
+
+        both = a
+        do i = 1, size(b)
+            if (any(abs(both - b(i)) <= 0.0_dp)) cycle
+            both = [pack(both, both < b(i)), b(i), pack(both, both > b(i))]
+        end do
+    end function joined
+
+    !> Reads the file that a key names: columns z, or x and z on a full grid, and `names`.
+    subroutine read_map(file, group_of_key, key, names, map, sound)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group_of_key, key
+        character(len=*), intent(in) :: names(:)
+        type(fault_map), intent(out) :: map
+        logical, intent(out) :: sound
+        type(column_request) :: requests(size(names) + 2)
+        type(csv) :: read_in
+        character(len=:), allocatable :: name
+        integer :: faults_before, column, i, j, k
+
+        faults_before = size(file%faults)
+        call file%get_text(group_of_key, key, name)
+        if (len(name) > 0) then
+            if (name(1:1) == '@') name = name(2:)
+        end if
+        sound = len(name) > 0
+        if (.not. sound) return
+        requests(1)%name = 'x'
+        requests(2)%name = 'z'
+        do i = 1, size(names)
+            requests(2 + i)%name = trim(names(i))
+        end do
+        call read_table(file%beside(name), requests, read_in)
+        do i = 1, size(read_in%faults)
+            call file%reject(group_of_key, key, read_in%faults(i)%text)
+        end do
+        if (size(file%faults) > faults_before) then
+            sound = .false.
+            return
+        end if
+        map%x = [0.0_dp]
+        if (read_in%column('x') > 0) map%x = joined([real(dp) ::], &
+            read_in%values(read_in%column('x'), :))
+        map%z = [0.0_dp]
+        if (read_in%column('z') > 0) then
+            map%z = joined([real(dp) ::], read_in%values(read_in%column('z'), :))
+        else
+            call file%reject(group_of_key, key, "its file has no column 'z'")
+        end if
+        if (size(map%x) * size(map%z) /= size(read_in%values, 2)) call file%reject(group_of_key, &
+            key, 'its file must have each node of a grid once: one row for each z, or for each ' &
+            // 'pair of an x and a z')
+        do j = 1, size(names)
+            if (read_in%column(trim(names(j))) == 0) call file%reject(group_of_key, key, &
+                "its file has no column '" // trim(names(j)) // "'")
+        end do
+        sound = size(file%faults) == faults_before
+        if (.not. sound) return
+        allocate (map%values(size(names), size(map%x), size(map%z)))
+        do k = 1, size(read_in%values, 2)
+            i = 1
+            if (read_in%column('x') > 0) i = count(map%x <= read_in%values(read_in%column('x'), k))
+            column = count(map%z <= read_in%values(read_in%column('z'), k))
+            do j = 1, size(names)
+                map%values(j, i, column) = read_in%values(read_in%column(trim(names(j))), k)
+            end do
+        end do
+    end subroutine read_map
+
+    ! ---- the rest ----------------------------------------------------------------------------
+
+    subroutine read_initial(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        character(len=:), allocatable :: how
+        logical :: sound
+
+        call file%get_choice(group, 'initial', how, ['steady', 'file  '], default='steady')
+        plan%steady = how == 'steady'
+        if (plan%steady) then
+            call file%belongs_elsewhere(group, 'initial_file', "needs initial = 'file'")
+            if (.not. plan%plate_rate > 0.0_dp .and. file%given(group, 'plate_rate')) then
+                call file%reject(group, 'plate_rate', "must be > 0 with initial = 'steady'")
+            end if
+        else
+            call file%require(group, 'initial_file')
+            call read_map(file, group, 'initial_file', ['traction ', 'slip_rate'], plan%initial, &
+                sound)
+            if (.not. sound) return
+            if (any(plan%initial%values(1, :, :) < 0.0_dp)) call file%reject(group, &
+                'initial_file', 'its column traction must be >= 0')
+            if (any(plan%initial%values(2, :, :) <= 0.0_dp)) call file%reject(group, &
+                'initial_file', 'its column slip_rate must be > 0')
+        end if
+    end subroutine read_initial
+
+    subroutine read_times(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        character(len=:), allocatable :: scheme
+
+        call file%get_real('time', 't_end', plan%t_end, above(0.0_dp))
+        call file%get_real('time', 'rtol', plan%rtol, between(1.0e-10_dp, 1.0e-1_dp), &
+            default=1.0e-4_dp)
+        call file%get_choice('time', 'scheme', scheme, ['auto    ', 'explicit', 'implicit'], &
+            default='auto')
+        if (scheme == 'explicit' .and. .not. plan%explicit .and. allocated(plan%constants%z)) then
+            call file%reject('time', 'scheme', &
+                "needs a law that gives the slip rate: law = 'rate_and_state'")
+        end if
+        if (scheme == 'implicit') plan%explicit = .false.
+    end subroutine read_times
+
+    subroutine read_output(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        real(dp), allocatable :: contours(:)
+
+        if (.not. file%has_group('output')) continue
+        call file%get_reals('output', 'stations', plan%station_z, at_least(0.0_dp))
+        if (any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
+            'must be from 0 to width')
+        if (plan%geometry == 'antiplane_half') then
+            call file%belongs_elsewhere('output', 'stations_x', "belongs to geometry = 'whole'")
+            plan%station_x = 0.0_dp * plan%station_z
+        else
+            call file%get_reals('output', 'stations_x', plan%station_x, any_number())
+            if (size(plan%station_x) == 0) plan%station_x = 0.0_dp * plan%station_z
+            if (size(plan%station_x) /= size(plan%station_z)) call file%reject('output', &
+                'stations_x', 'must have as many values as stations')
+            if (any(abs(plan%station_x) > 0.5_dp * plan%length)) call file%reject('output', &
+                'stations_x', 'must be within length/2 of the middle')
+        end if
+        call file%get_real('output', 'seismic_rate', plan%seismic_rate, above(0.0_dp), &
+            default=1.0e-3_dp)
+        call file%get_reals('output', 'slip_contours', contours, above(0.0_dp))
+        if (size(contours) == 2) then
+            plan%contours = contours
+        else if (size(contours) > 0) then
+            call file%reject('output', 'slip_contours', &
+                'takes two values: time between contours, and that during events')
+        end if
+        call file%get_integer('output', 'interval', plan%interval, at_least(1.0_dp), default=1)
+        call file%get_integer('output', 'fields', plan%fields, at_least(0.0_dp), default=0)
+        call file%get_real('output', 'checkpoint', plan%checkpoint, at_least(0.0_dp), &
+            default=60.0_dp)
+    end subroutine read_output
+
+    !> Another number for any input with other results, whatever the clock of the checkpoints.
+    pure function fingerprint_of(listing, plan) result(number)
+        character(len=*), intent(in) :: listing   !! of the input
+        type(fault_plan), intent(in) :: plan
+        integer(int64) :: number
+        integer :: i, k
+
+        number = 0
+        do i = 1, len(listing)
+            call mix([int(iachar(listing(i:i)), int64)], number)
+        end do
+        if (allocated(plan%constants%values)) then
+            do k = 1, size(plan%constants%values, 3)
+                do i = 1, size(plan%constants%values, 2)
+                    call mix(transfer(plan%constants%values(:, i, k), [0_int64]), number)
+                end do
+            end do
+        end if
+        if (.not. allocated(plan%initial%values)) return
+        do k = 1, size(plan%initial%values, 3)
+            do i = 1, size(plan%initial%values, 2)
+                call mix(transfer(plan%initial%values(:, i, k), [0_int64]), number)
+            end do
+        end do
+    end function fingerprint_of
+
+end module fault_reader

@@ -1,0 +1,38 @@
+!> The verb `fault`: hands over to the fault engine, a program of its own beside this one.
+module fault_study
+    use, intrinsic :: iso_fortran_env, only : error_unit
+    use command_line, only : command
+    use platform, only : program_beside, replace_program
+    use verb_common, only : exit_failed
+    implicit none
+    private
+
+    public :: run_fault_engine
+
+contains
+
+    !> Returns only if there is no engine.
+    subroutine run_fault_engine(wanted, exit_status)
+        type(command), intent(in) :: wanted
+        integer, intent(out) :: exit_status
+        character(len=:), allocatable :: engine, options
+        character(len=max(len(wanted%input), len(wanted%output), len(wanted%stem), 40)) :: &
+            arguments(4)
+
+        engine = program_beside('stickslip-fault')
+        options = 'options'
+        if (wanted%resume) options = options // ' resume'
+        if (wanted%quiet) options = options // ' quiet'
+        if (.not. wanted%plot) options = options // ' no-plot'
+        arguments = [character(len=len(arguments)) :: wanted%input, wanted%output, wanted%stem, &
+            options]
+        call replace_program(engine, arguments)
+        write (error_unit, '(2a)') 'stickslip: there is no fault engine ', engine
+        write (error_unit, '(a)') &
+            '  it is built where CMake finds FFTW; for several processes, MPI and FFTW for it.', &
+            '  Debian: apt-get install libfftw3-dev libfftw3-mpi-dev libopenmpi-dev openmpi-bin', &
+            '  then build again: docs/fault.md'
+        exit_status = exit_failed
+    end subroutine run_fault_engine
+
+end module fault_study

@@ -1,0 +1,214 @@
+"""The verb fault: a benchmark, restarts, any number of processes, input that is wrong."""
+import csv
+import filecmp
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ['STICKSLIP']
+ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault')
+MPIRUN = os.environ.get('MPIRUN', '')
+INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
+YEAR = 365 * 86400
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1',
+                   OMPI_MCA_rmaps_base_oversubscribe='1', OMPI_MCA_mpi_yield_when_idle='1')
+
+SMALL = """
+&fault geometry = 'antiplane_half', width = 40e3, nz = 64, shear_modulus = 32.04e9, wave_speed = 3464,
+       plate_rate = 1e-9, normal_traction = 50e6 /
+&friction law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6 /
+&time t_end = 1.0e10, rtol = 1e-4 /
+&output stations = 0, 10e3, checkpoint = 0, slip_contours = 3e8, 10 /
+"""
+LONG = SMALL.replace('nz = 64', 'nz = 128').replace('d_c = 0.032', 'd_c = 0.012')
+PLANE = """
+&fault geometry = 'whole', length = 60e3, width = 40e3, nx = 30, nz = 21, shear_modulus = 32.04e9,
+       wave_speed = 3464, plate_rate = 1e-9, normal_traction = 50e6, initial = 'file', initial_file = 'start.csv' /
+&friction law = 'rate_and_state', a = 0.007, b = 0.013, d_c = 0.04, v0 = 1e-6, f0 = 0.6 /
+&time t_end = 3e8, rtol = 1e-3 /
+&output stations = 20e3, stations_x = 5e3, checkpoint = 0 /
+"""
+START = 'x,z,traction,slip_rate\n' + ''.join(
+    f'{x},{z},{32e6 if (x, z) == (0, 20e3) else 30e6},{1e-9}\n'
+    for z in (0, 10e3, 20e3, 30e3, 40e3) for x in (-30e3, -10e3, 0, 10e3, 30e3))
+
+
+class FaultTest(unittest.TestCase):
+    def setUp(self):
+        if not ENGINE.exists():
+            self.skipTest('built without FFTW')
+        self.place = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.place)
+        (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,0.010\n18e3,0.025\n')
+        (self.place / 'start.csv').write_text(START)
+
+    def write(self, text, name='case.nml'):
+        (self.place / name).write_text(text)
+        return name
+
+    def command(self, processes, *arguments):
+        launcher = [MPIRUN, '-n', str(processes)] if processes > 1 else []
+        return launcher + [PROGRAM, 'fault', *arguments]
+
+    def run_fault(self, *arguments, processes=1, expect=0):
+        done = subprocess.run(self.command(processes, *arguments), cwd=self.place, env=ENVIRONMENT,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done
+
+    def assert_same_files(self, a, b):
+        names = sorted(path.name for path in (self.place / a).iterdir())
+        self.assertEqual(names, sorted(path.name for path in (self.place / b).iterdir()))
+        self.assertGreater(len(names), 3)
+        for name in names:
+            self.assertTrue(filecmp.cmp(self.place / a / name, self.place / b / name, shallow=False), name)
+
+    def kill_and_resume(self, name, seconds, processes, then_processes):
+        """Kills a run some time after its first checkpoint; resumed, it leaves the files of 'whole'."""
+        shutil.rmtree(self.place / 'parts', ignore_errors=True)
+        run = subprocess.Popen(self.command(processes, name, '--output', 'parts', '--quiet'), cwd=self.place,
+                               env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while not (self.place / 'parts' / 'case.checkpoint').exists() and run.poll() is None:
+            time.sleep(0.005)
+        time.sleep(seconds)
+        run.send_signal(signal.SIGKILL if processes == 1 else signal.SIGTERM)
+        run.wait()
+        if (self.place / 'parts' / 'case.checkpoint').exists():   # else the run was done before
+            self.run_fault(name, '--output', 'parts', '--quiet', '--resume', processes=then_processes)
+        for path in (self.place / 'parts').glob('*.new'):
+            path.unlink()
+        self.assert_same_files('whole', 'parts')
+
+    def events(self, directory, stem):
+        with open(self.place / directory / f'{stem}_events.csv', newline='') as file:
+            return list(csv.DictReader(file))
+
+
+class Benchmark(FaultTest):
+    def test_bp1_has_the_events_of_other_codes(self):
+        """78 m cells: the onsets are those of the community's codes at 25 m within a tenth of a year."""
+        self.run_fault(str(INPUTS / 'fault_bp1.nml'), '--output', 'bp1', '--quiet', '--no-plot')
+        events = self.events('bp1', 'fault_bp1')
+        self.assertEqual(len(events), 3)
+        for event, onset in zip(events, (196.49, 272.16, 350.02)):
+            self.assertAlmostEqual(float(event['onset']) / YEAR, onset, delta=0.1)
+        self.assertAlmostEqual(float(events[-1]['peak_slip_rate']), 4.18, delta=0.1)
+        with open(self.place / 'bp1' / 'fault_bp1_station_1.csv', newline='') as file:
+            rows = list(csv.DictReader(file))
+        self.assertAlmostEqual(float(rows[0]['log10_slip_rate']), -9, delta=1e-12)
+        # traction 26.546122 MPa of the benchmark's description, less radiation damping
+        self.assertAlmostEqual(float(rows[0]['traction']), 26546122 - 32.03812032e9 / 2 / 3464 * 1e-9, delta=1)
+
+
+class Processes(FaultTest):
+    def setUp(self):
+        super().setUp()
+        if not MPIRUN:
+            self.skipTest('built without MPI')
+
+    def test_files_do_not_depend_on_the_number_of_processes(self):
+        for text in (SMALL, PLANE):
+            name = self.write(text)
+            for processes in (1, 2, 3):
+                self.run_fault(name, '--output', f'on{processes}', '--quiet', processes=processes)
+            self.assert_same_files('on1', 'on2')
+            self.assert_same_files('on1', 'on3')
+
+    def test_killed_and_resumed_on_another_number_of_processes(self):
+        name = self.write(LONG)
+        self.run_fault(name, '--output', 'whole', '--quiet')
+        self.kill_and_resume(name, 0.3, 2, 1)
+        self.kill_and_resume(name, 0.05, 1, 2)
+
+
+class Restart(FaultTest):
+    def test_killed_runs_go_on_to_the_same_files(self):
+        name = self.write(LONG)
+        self.run_fault(name, '--output', 'whole', '--quiet')
+        for seconds in (0.0, 0.03, 0.1):
+            self.kill_and_resume(name, seconds, 1, 1)
+
+    def test_interrupted_run_says_how_to_go_on(self):
+        name = self.write(SMALL.replace('1.0e10', '1.0e13'))
+        run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
+        while not (self.place / 'case_out' / 'case.checkpoint').exists() and run.poll() is None:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        self.assertIn('--resume goes on', run.communicate()[1])
+        self.assertEqual(run.returncode, 1)
+
+    def test_another_input_or_a_damaged_checkpoint_is_refused(self):
+        name = self.write(LONG)
+        run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
+        checkpoint = self.place / 'case_out' / 'case.checkpoint'
+        while not checkpoint.exists() and run.poll() is None:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        run.communicate()
+        (self.place / 'a.csv').write_text('z,a\n0,0.011\n15e3,0.010\n18e3,0.025\n')
+        self.assertIn('not the one that wrote', self.run_fault(name, '--resume', expect=1).stderr)
+        (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,0.010\n18e3,0.025\n')
+        damaged = bytearray(checkpoint.read_bytes())
+        damaged[len(damaged) // 2] ^= 4
+        checkpoint.write_bytes(damaged)
+        self.assertIn('damaged', self.run_fault(name, '--resume', expect=1).stderr)
+        checkpoint.unlink()
+        self.assertIn('no checkpoint', self.run_fault(name, '--resume', expect=1).stderr)
+
+
+class Input(FaultTest):
+    def faults(self, text):
+        done = self.run_fault(self.write(text), expect=2)
+        self.assertFalse((self.place / 'case_out').exists())
+        checked = subprocess.run([PROGRAM, 'check', 'case.nml'], cwd=self.place, capture_output=True, text=True)
+        self.assertEqual(checked.stderr, done.stderr)
+        return done.stderr
+
+    def test_all_faults_are_told_at_once(self):
+        text = self.faults(SMALL.replace('nz = 64', 'nz = 1, nx = 3').replace('b = 0.015', 'b = -1')
+                           .replace('rtol', 'tol'))
+        for part in ('&fault nz = 1: must be from 2', '&fault nx', '&friction b = -1: must be >= 0', '&time tol'):
+            self.assertIn(part, text)
+
+    def test_files_that_do_not_fit_are_faults(self):
+        self.assertIn('no_such.csv', self.faults(SMALL.replace('@a.csv', '@no_such.csv')))
+        (self.place / 'b.csv').write_text('x,z,a\n0,0,0.010\n')
+        self.assertIn("no column 'b'", self.faults(SMALL.replace('b = 0.015', "b = '@b.csv'")))
+        (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,-0.010\n')
+        self.assertIn('a = -', self.faults(SMALL))
+        (self.place / 'a.csv').write_text('x,z,a\n0,0,0.010\n1e3,15e3,0.010\n')
+        self.assertIn('each node of a grid once', self.faults(SMALL))
+
+    def test_values_out_of_place_are_faults(self):
+        self.assertIn('must be from 0 to width', self.faults(SMALL.replace('stations = 0', 'stations = 50e3')))
+        self.assertIn("law = 'rate_and_state'", self.faults(
+            SMALL.replace("law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6",
+                          "law = 'coulomb', mu = 0.6").replace('rtol = 1e-4', "rtol = 1e-4, scheme = 'explicit'")))
+        self.assertIn('two values', self.faults(SMALL.replace('3e8, 10', '3e8')))
+
+    def test_cells_too_large_are_a_warning(self):
+        text = self.run_fault(self.write(SMALL.replace('1.0e10', '1.0e6').replace('0.032', '0.008'))).stderr
+        self.assertIn('do not resolve the cohesive length', text)
+        self.assertNotIn('cohesive', self.run_fault(self.write(SMALL.replace('1.0e10', '1.0e6').replace(
+            '0.032', '0.08'))).stderr)
+
+
+class Absent(unittest.TestCase):
+    def test_without_the_engine_the_program_says_what_to_install(self):
+        with tempfile.TemporaryDirectory() as place:
+            alone = pathlib.Path(place) / 'stickslip'
+            shutil.copy(PROGRAM, alone)
+            done = subprocess.run([alone, 'fault', INPUTS / 'fault_bp1.nml'], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn('libfftw3-dev', done.stderr)
+            checked = subprocess.run([alone, 'check', INPUTS / 'fault_bp1.nml'], capture_output=True, text=True)
+            self.assertEqual(checked.returncode, 0, checked.stderr)
+
+
+if __name__ == '__main__':
+    unittest.main()
