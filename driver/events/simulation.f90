@@ -5,13 +5,13 @@ module simulation
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_observer, only : chain_watch
-    use chain_settings, only : scattered
+    use chain_settings, only : displaced, scattered
     use friction_mod, only : friction_message, friction_snap_back
     use integrator_choice, only : choose_integrator
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
-    use slider_system, only : initial_state, place, slider, slider_state, swap_states
+    use slider_system, only : displace, initial_state, place, slider, slider_state, swap_states
     use slip_observer, only : slip_watch
     implicit none
     private
@@ -53,6 +53,8 @@ contains
             live%state, status)
         if (status < 0) live%problem = 'at the start: ' // friction_message(status)
         call place(system, run%initial, live%state)
+        if (run%chain%displacement_scatter > 0.0_dp) call displace(system, displaced(run%chain), &
+            live%state)
         call choose_integrator(run, system, live%state, live%steps)
         live%energy_at_start = system%energy_of(live%state)
     end subroutine start_run

@@ -31,9 +31,13 @@ contains
         if (ends == 'periodic') blocks%ends = ends_periodic
         call file%get_real(group, 'scatter', blocks%scatter, between(0.0_dp, 0.99_dp), &
             default=0.0_dp)
+        call file%get_real(group, 'displacement_scatter', blocks%displacement_scatter, &
+            at_least(0.0_dp), default=0.0_dp)
         call file%get_integer(group, 'seed', blocks%seed, at_least(0.0_dp), default=1)
         if (file%given(group, 'slip_rate')) call file%get_real(group, 'slip_rate', &
             blocks%slip_rate, above(0.0_dp))
+        if (blocks%displacement_scatter > 0.0_dp .and. mass <= 0.0_dp) call file%reject(group, &
+            'displacement_scatter', 'must be 0 without a mass')
         if (blocks%n_blocks > 1 .and. mass <= 0.0_dp) call file%reject(group, 'n_blocks', &
             'must be 1 without a mass')
         if (blocks%n_blocks == 1 .and. blocks%ends == ends_periodic) blocks%ends = ends_free

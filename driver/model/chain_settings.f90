@@ -1,43 +1,70 @@
-!> A chain of blocks: what couples them, and how their strengths scatter.
+!> A chain of blocks: what couples them, and how their strengths and their first places scatter.
 module chain_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use slider_system, only : ends_free
     implicit none
     private
 
-    public :: chain, scattered
+    public :: chain, displaced, scattered
 
     type :: chain
         integer :: n_blocks = 1
         real(dp) :: coupling = 0.0_dp    !! stiffness between neighbours [F/L]
         integer :: ends = ends_free
         real(dp) :: scatter = 0.0_dp     !! of the blocks' normal traction, relative [-]
+        real(dp) :: displacement_scatter = 0.0_dp   !! of the blocks' places at the start [L]
         integer :: seed = 1
         real(dp) :: slip_rate = 0.0_dp   !! from which on slip belongs to an event [L/T]
     end type chain
 
 contains
 
-    !> Random numbers from 1 - scatter to 1 + scatter, the same on every machine: Marsaglia's
-    !> xorshift generator of 64 bits (J. Stat. Softw. 8(14), 2003), from a seed whose
-    !> bits are mixed first.
+    !> Factors of the blocks' normal traction, from 1 - scatter to 1 + scatter.
     pure function scattered(blocks) result(factors)
         type(chain), intent(in) :: blocks
         real(dp), allocatable :: factors(:)   !! one a block [-]
+
+        factors = 1.0_dp + blocks%scatter * random_numbers(blocks%seed, 0_int64, blocks%n_blocks)
+    end function scattered
+
+    !> What the blocks' places at the start differ from a common one.
+    pure function displaced(blocks) result(by)
+        type(chain), intent(in) :: blocks
+        real(dp), allocatable :: by(:)        !! one a block [L]
+        integer(int64), parameter :: stream = 1181783497276652981_int64   ! other than 0
+
+        by = blocks%displacement_scatter * random_numbers(blocks%seed, stream, blocks%n_blocks)
+    end function displaced
+
+    !> Random numbers, even from -1 to 1, the same on every machine: Marsaglia's xorshift generator
+    !> of 64 bits (J. Stat. Softw. 8(14), 2003), from a seed whose bits are mixed first.
+    pure function random_numbers(seed, stream, n) result(numbers)
+        integer, intent(in) :: seed              !! >= 0
+        integer(int64), intent(in) :: stream     !! one of several sequences to a seed
+        integer, intent(in) :: n
+        real(dp) :: numbers(n)
         integer(int64), parameter :: origin = 88172645463325252_int64
         integer, parameter :: mixing_rounds = 64
         integer(int64) :: bits
         integer :: i
 
-        allocate (factors(blocks%n_blocks))
-        bits = ieor(origin, int(blocks%seed, int64))
-        do i = 1 - mixing_rounds, blocks%n_blocks
-            bits = ieor(bits, shiftl(bits, 13))
-            bits = ieor(bits, shiftr(bits, 7))
-            bits = ieor(bits, shiftl(bits, 17))
-            if (i > 0) factors(i) = 1.0_dp + blocks%scatter &
-                * (2.0_dp * scale(real(shiftr(bits, 11), dp), -53) - 1.0_dp)
+        bits = ieor(ieor(origin, stream), int(seed, int64))
+        do i = 1, mixing_rounds
+            bits = next_bits(bits)
         end do
-    end function scattered
+        do i = 1, n
+            bits = next_bits(bits)
+            numbers(i) = 2.0_dp * scale(real(shiftr(bits, 11), dp), -53) - 1.0_dp
+        end do
+    end function random_numbers
+
+    pure function next_bits(bits) result(next)
+        integer(int64), intent(in) :: bits
+        integer(int64) :: next
+
+        next = ieor(bits, shiftl(bits, 13))
+        next = ieor(next, shiftr(next, 7))
+        next = ieor(next, shiftl(next, 17))
+    end function next_bits
 
 end module chain_settings

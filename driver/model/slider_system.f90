@@ -15,7 +15,7 @@ module slider_system
     implicit none
     private
 
-    public :: apply_normal_traction, blend, energy_balance, friction_forces, &
+    public :: apply_normal_traction, blend, displace, energy_balance, friction_forces, &
         initial_state, initial_values, place, set_accelerations, slider, slider_state, swap_states
 
     !> What the first and the last block are coupled to.
@@ -124,6 +124,17 @@ contains
         state%drive = state%x(1) + state%spring(1) / system%stiffness
         call set_accelerations(system, state)
     end subroutine place
+
+    !> Moves blocks at the start; the drive and the contacts stay as they are.
+    pure subroutine displace(system, by, state)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: by(:)                !! one a block [L]
+        type(slider_state), intent(inout) :: state   !! as `initial_state` or `place` left it
+
+        state%x = state%x + by
+        state%spring = state%spring - system%stiffness * by
+        call set_accelerations(system, state)
+    end subroutine displace
 
     !> Accelerations by the equation of motion; without a mass they are what they were.
     pure subroutine set_accelerations(system, state)

@@ -211,6 +211,7 @@ contains
             '             fields (0): of a chain; checkpoint (60) [s]', &
             '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &
             '  &chain     n_blocks, coupling [F/L], ends (''free''), scatter (0), seed (1),', &
+            '             displacement_scatter (0) [L],', &
             '             slip_rate [L/T]', &
             '  all of them: docs/driver.md', &
             'and of point, beside &friction (docs/point_mode.md):', &

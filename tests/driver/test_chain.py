@@ -2,10 +2,14 @@
 
 STICKSLIP names the program.
 """
+import math
 import os
 import random
+import re
+import shutil
 import signal
 import struct
+import subprocess
 import time
 import unittest
 import xml.etree.ElementTree
@@ -88,6 +92,55 @@ class Motion(Chain):
                 rest.append(abs(left) / work)
             self.assertLess(rest[1], 0.4 * rest[0])   # first order: a quarter
             self.assertLess(rest[1], 2e-3)
+
+    def test_blocks_start_from_random_places_that_the_seed_decides(self):
+        # Marsaglia's xorshift generator, written down a second time; the series shows the means over the blocks
+        def drawn(seed, n):
+            mask, bits, numbers = 2**64 - 1, 88172645463325252 ^ 1181783497276652981 ^ seed, []
+            for i in range(64 + n):
+                bits ^= bits << 13 & mask
+                bits ^= bits >> 7
+                bits ^= bits << 17 & mask
+                if i >= 64:
+                    numbers.append(2 * (bits >> 11) / 2**53 - 1)
+            return numbers
+
+        for seed in (1, 2, 77):
+            self.run_chain({('chain', 'displacement_scatter'): '0.01', ('chain', 'seed'): str(seed), ('time', 't_end'): '0.1',
+                            ('initial', 'displacement'): '3', ('output', 'interval'): '1'})
+            first = self.rows('case_out/case.csv')[0]
+            mean = sum(drawn(seed, 20)) / 20
+            self.assertAlmostEqual(float(first['displacement']), 3 + 0.01 * mean, delta=1e-14)
+            self.assertAlmostEqual(float(first['spring_force']), -0.01 * mean, delta=1e-14)
+            self.assertEqual(float(first['drive']), 3.0)
+        numbers = drawn(5, 10000)   # they are even, and other ones than those of the strengths
+        self.assertLess(abs(sum(numbers) / 10000), 4 / 3**0.5 / 100)
+        self.assertLess(abs(sum(x * x for x in numbers) / 10000 - 1 / 3), 4 * (4 / 45)**0.5 / 100)
+
+    def test_random_places_make_equal_blocks_move_apart(self):
+        self.run_chain({('output', 'fields'): '500'})
+        self.assertLess(max(max(slips) - min(slips) for slips in self.slips()), 1e-9)   # Newton's tolerance
+        self.run_chain({('output', 'fields'): '500', ('chain', 'displacement_scatter'): '0.1'})
+        self.assertGreater(max(max(slips) - min(slips) for slips in self.slips()), 0.1)
+
+    def test_the_picture_of_the_catalogue_tells_the_b_value(self):
+        if shutil.which('gnuplot') is None:
+            self.skipTest('gnuplot is not installed')
+        text = namelist({**RUN, ('chain', 'scatter'): '0.3'})
+        result = self.run_text(text)
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        chance = random.Random(4)
+        b, least, n = 0.8, -1.5, 4000   # magnitudes are exponential; a few events more before the catalogue is complete
+        magnitudes = [least + chance.expovariate(b * math.log(10)) for _ in range(n)] + [least - 0.1 * k for k in range(20)]
+        head = (self.folder / 'case_out/case_events.csv').read_text().splitlines()[0]
+        rows = [f'{k},1,1,1,1,{10**(1.5 * m)!r},1,1' for k, m in enumerate(magnitudes)] + ['9,1,1,1,1,1e30,1,0']
+        (self.folder / 'case_out/case_events.csv').write_text('\n'.join([head, *rows]) + '\n')
+        subprocess.run(['gnuplot', 'case_events.gp'], cwd=self.folder / 'case_out', check=True, capture_output=True)
+        told = re.search(r'b = ([\d.]+) \+- ([\d.]+), from (\d+) events', (self.folder / 'case_out/case_events.svg').read_text())
+        found, error, number = (float(told.group(k)) for k in (1, 2, 3))
+        self.assertAlmostEqual(error, b / n**0.5, delta=0.005)
+        self.assertAlmostEqual(found, b, delta=4 * b / n**0.5)
+        self.assertTrue(0.7 * n < number <= n + 1)
 
     def test_the_seed_decides_and_nothing_else(self):
         found = []
@@ -254,6 +307,8 @@ class BadChains(Chain):
                      '&chain scatter = nan: must be finite', '&chain seed = 1.5: must be a whole number',
                      "&chain slip_rate = 'fast': must be a number", '&output fields = 1.5: must be a whole number')
         self.refused(namelist({**RUN, ('chain', 'seed'): '1\n  seed = 2'}), '&chain seed')
+        self.refused(namelist({('chain', 'n_blocks'): '1', ('chain', 'coupling'): '1', ('chain', 'displacement_scatter'): '1',
+                               ('slider', 'mass'): '0'}), '&chain displacement_scatter = 1: must be 0 without a mass')
 
     def test_what_is_missing_or_does_not_fit(self):
         self.refused(namelist({('chain', 'seed'): '1'}), '&chain n_blocks: is missing',
