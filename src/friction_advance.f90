@@ -36,6 +36,7 @@ contains
         motion%dt = dtime
         motion%pressure_given = .false.
         motion%pressure = 0.0_wp
+        motion%blur = 0.0_wp
         if (sizes%ndir == 3) then
             motion%du(3) = du(3)
             call advance(motion, sizes, props, statev, traction, tangent, status)
@@ -51,8 +52,9 @@ contains
     module procedure friction_update_frame
         real(wp) :: axes(3, 3), state(statev_size), contact_traction(3), contact_tangent(3, 3)
         real(wp) :: vector(3), matrix(3, 3)
+        real(wp), parameter :: turning = 8.0_wp * epsilon(turning)   !! what it takes in and out
         type(contact_motion) :: motion
-        integer :: n
+        integer :: n, answer
 
         n = size(du)
         status = friction_bad_size
@@ -81,12 +83,17 @@ contains
         motion%pressure_given = .false.
         motion%pressure = 0.0_wp
         state = statev(1:statev_size)
+        motion%blur = turning * (sum(abs(state(statev_u_n:statev_u_n + n - 1))) + sum(abs(du)))
         vector = matmul(state(statev_u_n:statev_u_n + 2), axes)
         state(statev_u_n:statev_u_n + n - 1) = vector(1:n)
         call advance(motion, array_sizes(1, n, size(props), statev_size), props, state, &
-            contact_traction, contact_tangent, status)
+            contact_traction, contact_tangent, answer)
+        status = answer
         if (status < 0) return
         vector = matmul(axes, state(statev_u_n:statev_u_n + 2))
+        status = friction_bad_increment
+        if (.not. all_usable(3, vector)) return
+        status = answer
         state(statev_u_n:statev_u_n + n - 1) = vector(1:n)
         statev(1:statev_size) = state
         vector = matmul(axes, contact_traction)
@@ -136,6 +143,7 @@ contains
         motion%dt = dtime
         motion%pressure_given = .true.
         motion%pressure = pressure
+        motion%blur = 0.0_wp
         call advance(motion, array_sizes(1, n + 1, size(props), size(statev)), props, statev, &
             contact_traction, contact_tangent, status)
         if (status < 0) return
@@ -164,7 +172,6 @@ contains
         if (.not. all_usable(3, v)) return
         status = friction_bad_property
         if (.not. all_usable(size(props), props)) return
-        if (props(prop_alpha_n) <= 0.0_wp .or. props(prop_alpha_t) <= 0.0_wp) return
         call choose_law(size(props), props, storage, surface, plane, status)
         if (status < 0) return
         call unpack_state(surface, n, statev, point, status)
@@ -276,7 +283,7 @@ contains
         type(contact_point), intent(in) :: old
         logical :: sheared
 
-        sheared = any(abs(old%u_et + motion%du(2:3)) > 0.0_wp)
+        sheared = sum(abs(old%u_et + motion%du(2:3))) > motion%blur
         if (motion%pressure_given) then
             sheared = sheared .and. motion%pressure > 0.0_wp
         else

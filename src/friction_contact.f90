@@ -37,6 +37,8 @@ module friction_contact
         real(wp) :: dt              !! increment of time, >= 0 [T]
         real(wp) :: pressure        !! at the end of the increment, if given [F/L^2]
         logical :: pressure_given   !! the pressure replaces the normal spring
+        real(wp) :: blur            !! round-off of displacements, where it is more than that of
+                                    !! each component, else 0 [L]
     end type contact_motion
 
     !> State of a contact point.
@@ -92,8 +94,8 @@ contains
         q(1) = old%u_et(1) + loaded * motion%du(2)
         q(2) = old%u_et(2) + loaded * motion%du(3)
 
-        call tangential_update(surface, springs%tangential, plane, q, pressure, motion%dt, old, &
-            new, tau, by_q, by_pressure, status)
+        call tangential_update(surface, springs%tangential, plane, q, pressure, motion, old, new, &
+            tau, by_q, by_pressure, status)
         if (status < 0) return
         if (.not. motion%pressure_given) by_pressure = -springs%normal * by_pressure
         if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure, status)
@@ -125,7 +127,7 @@ contains
         real(wp), parameter :: steepest = 2.0_wp**960   !! that is still in range [F/L^3]
         real(wp) :: by_loaded(2)
 
-        by_loaded = matmul(by_q, du(2:3))
+        by_loaded = by_q(:, 1) * du(2) + by_q(:, 2) * du(3)
         if (maxval(abs(by_loaded)) / steepest > abs(du(1))) then
             status = friction_bad_increment
             return
@@ -151,14 +153,14 @@ contains
 
     !> Stick or slip under pressure: the tangential traction, its derivatives by `q` and by the
     !> pressure.
-    pure subroutine tangential_update(surface, alpha_t, plane, q, pressure, dt, old, new, tau, &
-        by_q, by_pressure, status)
+    pure subroutine tangential_update(surface, alpha_t, plane, q, pressure, motion, old, new, &
+        tau, by_q, by_pressure, status)
         class(law), intent(in) :: surface
         real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         type(orthotropy), intent(in) :: plane
         real(wp), intent(inout) :: q(2)       !! trial elastic tangential displacement [L]
         real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
-        real(wp), intent(in) :: dt            !! increment of time [T]
+        type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
         real(wp), intent(out) :: tau(2)             !! tangential traction [F/L^2]
@@ -168,14 +170,16 @@ contains
         real(wp), parameter :: near_underflow = 2.0_wp**(-450)   !! of a length, in its square [L]
         type(law_state) :: start
         type(reloading) :: reload
-        real(wp) :: distance, strength
+        real(wp) :: distance, strength, limit, blur
 
         status = friction_bad_increment
         distance = sqrt(q(1)**2 + (plane%squeeze * q(2))**2)
-        if (distance < near_underflow) call measure(q, plane%squeeze, distance)
+        blur = max(1.0_wp, plane%squeeze) * motion%blur
+        if (distance <= max(near_underflow, blur)) call measure(q, plane%squeeze, max(least, &
+            motion%blur), distance)
         if (max(distance, alpha_t * distance) > largest) return
         status = friction_ok
-        call surface%rest(alpha_t * distance, pressure, dt, old%inner, new%inner, strength)
+        call surface%rest(alpha_t * distance, pressure, motion%dt, old%inner, new%inner, strength)
         start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
             call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
@@ -184,7 +188,9 @@ contains
             start%r = reload%share * start%r
             strength = reload%share * strength
         end if
-        if (alpha_t * distance <= strength * (1.0_wp + verge)) then
+        limit = strength * (1.0_wp + verge)
+        if (blur > 0.0_wp) limit = limit + alpha_t * blur + strength * (motion%blur / abs(new%u_n))
+        if (alpha_t * distance <= limit) then
             new%phase = point_stick
             new%u_et(1) = q(1)
             new%u_et(2) = q(2)
@@ -198,19 +204,20 @@ contains
             by_q(2, 2) = alpha_t
             by_pressure = 0.0_wp
         else
-            call slip_update(surface, alpha_t, plane, q, distance, pressure, dt, start, reload, &
-                old, new, tau, by_q, by_pressure, status)
+            call slip_update(surface, alpha_t, plane, q, distance, pressure, motion%dt, start, &
+                reload, old, new, tau, by_q, by_pressure, status)
         end if
     end subroutine tangential_update
 
-    !> Length of a displacement whose squares underflow; below the least one it is none.
-    pure subroutine measure(q, squeeze, distance)
+    !> Length of a displacement whose squares may underflow; below the least one it is none.
+    pure subroutine measure(q, squeeze, shortest, distance)
         real(wp), intent(inout) :: q(2)       !! [L]
         real(wp), intent(in) :: squeeze       !! how much more the second counts [-]
+        real(wp), intent(in) :: shortest      !! [L]
         real(wp), intent(out) :: distance     !! its equivalent length [L]
 
         distance = hypot(q(1), squeeze * q(2))
-        if (hypot(q(1), q(2)) > least) return
+        if (hypot(q(1), q(2)) > shortest) return
         q = 0.0_wp
         distance = 0.0_wp
     end subroutine measure

@@ -84,6 +84,8 @@ module friction_law
         procedure :: traits => simple_traits
         procedure :: slopes => slopes_of_convex
         procedure :: slide_uncapped => slide_as_ever
+        procedure :: scale_of_terms => scale_of_itself
+        procedure :: settle => settled_already
         procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
         procedure :: start_rate => no_start_rate
@@ -235,6 +237,28 @@ contains
         least = first%d_slip
         most = last%d_slip
     end subroutine slopes_of_convex
+
+    !> Magnitude of the terms that the resistance is computed from: units of round-off of this are
+    !> its error. A law with terms that cancel overrides it.
+    pure function scale_of_itself(self, slid, dt, old) result(scale)
+        class(law), intent(in) :: self
+        type(sliding), intent(in) :: slid      !! what `slide` says
+        real(wp), intent(in) :: dt             !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old     !! state at the start of the increment
+        real(wp) :: scale                      !! [F/L^2]
+
+        scale = slid%resistance
+    end function scale_of_itself
+
+    !> The search leaves a misfit, which is round-off, between spring and law. A law whose state
+    !> tells the traction makes the two agree.
+    pure subroutine settled_already(self, misfit, stiffness, pressure, answer)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: misfit         !! traction of the spring less resistance [F/L^2]
+        real(wp), intent(in) :: stiffness      !! of the spring [F/L^3]
+        real(wp), intent(in) :: pressure       !! contact pressure, > 0 [F/L^2]
+        type(sliding), intent(inout) :: answer
+    end subroutine settled_already
 
     !> `slide` without the cap that the law may have.
     pure subroutine slide_as_ever(self, slip, pressure, dt, old, new, resistance, d_slip, &

@@ -8,8 +8,9 @@ module friction_law_constants
 
     public :: complete_constants, constant_table, default_value, law_constant, obeys, positive
 
-    !> The least number that is above zero, where a constant has to be.
-    real(wp), parameter :: positive = tiny(1.0_wp)
+    !> The least number that counts as above zero, where a constant has to be: its reciprocal is the
+    !> largest number that is taken.
+    real(wp), parameter :: positive = 2.0_wp**(-333)
 
     integer, parameter, public :: name_length = 16, unit_length = 8, meaning_length = 64
     integer, parameter, public :: words_length = 64

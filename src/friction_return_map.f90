@@ -165,7 +165,7 @@ contains
         x = 0.0_wp
         do iteration = 1, max_iterations
             call spring%at(x, there)
-            step = (there%traction - traction) / (there%stiffness * there%rate)
+            step = max((there%traction - traction) / (there%stiffness * there%rate), 0.0_wp)
             x = min(x + step, spring%x_end)
             if (step <= epsilon(step) * x) exit
         end do
@@ -279,6 +279,14 @@ contains
             call slide_to(surface, spring, this, root)
         end do
         status = friction_ok
+        if (high > tiny(high)) then
+            call surface%settle(root%g, root%spring%stiffness, this%pressure, root%law)
+        else   ! all of the slip is in the underflow
+            call surface%settle(root%g, tiny(high), this%pressure, root%law)
+            root%g = root%spring%traction - root%law%resistance
+        end if
+        if (abs(root%g) <= 100.0_wp * round_off * (scale + root%x * abs(fall))) return
+        scale = scale + surface%scale_of_terms(root%law, this%dt, this%old)
         if (abs(root%g) <= 100.0_wp * round_off * (scale + root%x * abs(fall))) return
         status = friction_no_convergence
     end subroutine pin_down

@@ -55,6 +55,8 @@ module friction_rate_state_law
         procedure :: resistance_at
         procedure :: traits
         procedure :: slopes
+        procedure :: scale_of_terms
+        procedure :: settle
         procedure :: needs_time
         procedure :: solve
     end type rate_state_law
@@ -72,6 +74,10 @@ module friction_rate_state_law
         default_from=3, default_per=4)]
 
     real(wp), parameter :: least_slip = 1.0e-100_wp   !! in units of d_c; see above
+
+    !> Least a, by the larger of b and f0: below, round-off of ln(theta) is more than the whole
+    !> direct effect.
+    real(wp), parameter :: least_direct = 1.0e-12_wp
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
     integer, parameter, public :: n_constants = size(table)
@@ -96,6 +102,7 @@ contains
         self%d_c = constants(3)
         self%v0 = constants(4)
         self%f0 = constants(5)
+        if (self%a < least_direct * max(self%b, self%f0)) return
         call complete_constants(n_needed, table, n, constants, c, status)
         if (status /= friction_ok) return
         self%evolution = int(c(6))
@@ -328,8 +335,11 @@ contains
         do iteration = 1, max_iterations
             call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
                 answer%d_slip, answer%d_pressure)
-            if (solved) return
             misfit = trial - stiffness * answer%slip - answer%resistance
+            if (solved) then
+                call self%settle(misfit, stiffness, pressure, answer)
+                return
+            end if
             if (misfit > 0.0_wp) then
                 low = answer%slip
             else if (answer%slip > low) then
@@ -351,6 +361,35 @@ contains
         end do
         solved = .false.
     end subroutine solve
+
+    !> The stiffer of the two, spring or law, knows the traction better.
+    pure subroutine settle(self, misfit, stiffness, pressure, answer)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: misfit, stiffness, pressure
+        type(sliding), intent(inout) :: answer
+        real(wp) :: stiff
+
+        stiff = max(answer%d_slip, 0.0_wp)
+        answer%resistance = answer%resistance + misfit * (stiff / (stiffness + stiff))
+        answer%state%mu = answer%resistance / pressure
+        answer%d_pressure = answer%state%mu
+    end subroutine settle
+
+    !> The exponent X is a sum of logarithms, multiplied by b/a.
+    pure function scale_of_terms(self, slid, dt, old) result(scale)
+        class(rate_state_law), intent(in) :: self
+        type(sliding), intent(in) :: slid
+        real(wp), intent(in) :: dt
+        type(law_state), intent(in) :: old
+        real(wp) :: scale
+        real(wp) :: s, terms
+
+        s = max(slid%slip, least_slip * self%d_c)
+        terms = abs(log(self%v0)) + abs(log(self%d_c)) + abs(log(old%r)) + abs(log(slid%state%r))
+        terms = 1.0_wp + abs(log(s)) + abs(log(dt)) + abs(log(self%v0)) + (self%f0 + self%b &
+            * terms) / self%a
+        scale = slid%resistance * (1.0_wp + terms)
+    end function scale_of_terms
 
     !> The slip under a traction if the state does not evolve by slip.
     pure function creep(self, traction, pressure, dt, theta_n, most) result(slip)

@@ -31,6 +31,8 @@ module friction_shear_cap
         procedure :: resistance_at
         procedure :: traits
         procedure :: slide_uncapped
+        procedure :: scale_of_terms
+        procedure :: settle
         procedure :: slopes
         procedure :: needs_time
         procedure :: solve
@@ -88,6 +90,24 @@ contains
 
         call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
     end subroutine slide_uncapped
+
+    pure function scale_of_terms(self, slid, dt, old) result(scale)
+        class(capped_law), intent(in) :: self
+        type(sliding), intent(in) :: slid
+        real(wp), intent(in) :: dt
+        type(law_state), intent(in) :: old
+        real(wp) :: scale
+
+        scale = self%inner%scale_of_terms(slid, dt, old)
+    end function scale_of_terms
+
+    pure subroutine settle(self, misfit, stiffness, pressure, answer)
+        class(capped_law), intent(in) :: self
+        real(wp), intent(in) :: misfit, stiffness, pressure
+        type(sliding), intent(inout) :: answer
+
+        call self%inner%settle(misfit, stiffness, pressure, answer)
+    end subroutine settle
 
     pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
         class(capped_law), intent(in) :: self

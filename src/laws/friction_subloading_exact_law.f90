@@ -10,7 +10,7 @@ module friction_subloading_exact_law
     use friction_exponential_integral, only : e1, inverse_e1
     use friction_kinds, only : wp
     use friction_law, only : law_state, sliding
-    use friction_subloading_law, only : subloading_law
+    use friction_subloading_law, only : least_ratio, subloading_law
     implicit none
     private
 
@@ -57,7 +57,7 @@ contains
 
         call friction_coefficient(self, 0.0_wp, dt, old, new%mu, fall)
         full = new%mu * pressure
-        strength = old%r * full
+        strength = max(old%r, least_ratio) * full
         new%r = 0.0_wp
         if (full > 0.0_wp) new%r = traction / max(full, traction)
     end subroutine rest

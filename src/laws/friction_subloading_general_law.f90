@@ -13,7 +13,7 @@
 !> 1/U is convex, so R rises ever slower with s.
 module friction_subloading_general_law
     use friction_kinds, only : wp
-    use friction_law, only : law_state, sliding
+    use friction_law, only : law_state, sliding, unbounded
     use friction_subloading_law, only : subloading_law, u_reciprocal
     implicit none
     private
@@ -43,7 +43,7 @@ contains
         call similarity_ratio(self, old%r, slip, new%r, rate)
         d_pressure = new%r * new%mu
         resistance = d_pressure * pressure
-        d_slip = pressure * (new%mu * rate - new%r * fall)
+        d_slip = pressure * (min(new%mu * rate, unbounded) - new%r * fall)
     end subroutine slide
 
     !> Newton's method in the slip, bracketed, where there can be one equilibrium only.
@@ -143,7 +143,7 @@ contains
         real(wp), intent(in) :: slip   !! slip in the increment, >= 0 [L]
         real(wp), intent(out) :: r     !! R at its end [-]
         real(wp), intent(out) :: rate  !! [1/L]
-        real(wp), parameter :: least = 1.0e-80_wp   ! below R = 1e-40 the rate stays in range
+        real(wp), parameter :: least = 1.0e-201_wp   ! below R = 1e-100 the rate stays in range
         real(wp) :: e, ms, sine, cosine
 
         ms = self%m * slip

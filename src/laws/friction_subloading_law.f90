@@ -77,6 +77,9 @@ module friction_subloading_law
         law_constant('u_of_r', '-', 'evolution of R', lower=0.0_wp, upper=2.0_wp, not_beside=7, &
         optional=.true., whole=.true., words='logarithm cotangent reciprocal')]
 
+    !> R below which no slip starts: it would be in the underflow of the arithmetic.
+    real(wp), parameter, public :: least_ratio = 1.0e-100_wp
+
     !> The next error of a third-order iteration is the cube of a step this small, that of Newton's
     !> method its square: round-off either way.
     real(wp), parameter :: small_step = 1.0e-5_wp, small_newton_step = 1.0e-8_wp
@@ -183,7 +186,7 @@ contains
 
         new%mu = friction_coefficient(self, 1.0_wp + self%xi * dt, weakening_reserve(self, dt, old))
         full = new%mu * pressure
-        strength = old%r * full
+        strength = max(old%r, least_ratio) * full
         new%r = 0.0_wp
         if (full > 0.0_wp) new%r = traction / max(full, traction)
     end subroutine rest

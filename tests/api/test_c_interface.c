@@ -203,7 +203,7 @@ static void laws_tell_their_constants(void)
     CHECK(friction_get_law(4, &law) == FRICTION_OK && strcmp(law.internal, "theta") == 0
           && strcmp(law.internal_unit, "T") == 0);
     CHECK(friction_get_constant(4, 9, &constant) == FRICTION_OK && strcmp(constant.name, "theta_0") == 0);
-    CHECK(constant.optional == 1 && constant.choice == 0 && constant.lower > 0 && constant.lower < 1e-300);
+    CHECK(constant.optional == 1 && constant.choice == 0 && constant.lower > 0 && constant.lower < 1e-90);
     CHECK(strcmp(constant.default_text, "d_c/v0") == 0 && strcmp(constant.rule, "must be > 0") == 0
           && strcmp(constant.unit, "T") == 0 && strcmp(constant.meaning, "theta of a virgin point") == 0);
     CHECK(friction_get_constant(4, 8, &constant) == FRICTION_OK && constant.choice == 1 && constant.upper == 1

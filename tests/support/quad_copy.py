@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Copies the library's sources in quadruple precision: quad_friction_mod is friction_mod to 30 digits.
+"""Copies the library's sources for tests, with other names of modules.
 
-Usage: quad_copy.py OUTPUT_DIRECTORY SOURCE...
+Usage: quad_copy.py quad|counted OUTPUT_DIRECTORY SOURCE...
 
-What the copy computes is the reference for round-off and for derivatives of every law, present and future.
+quad_friction_mod is friction_mod to 30 digits: the reference for round-off and for derivatives of every law, present
+and future. counted_friction_mod counts how often the search asks a law (`evaluations` of counted_friction_kinds).
 """
 import pathlib
 import re
@@ -18,10 +19,26 @@ OVERSIZE = """    pure function oversize(x) result(bits)
     end function oversize"""
 
 
+def renamed(text: str, prefix: str) -> str:
+    text = re.sub(r'\b((?:sub)?module|use|submodule\(friction_mod\)) friction_', rf'\1 {prefix}_friction_', text)
+    return text.replace('submodule(friction_mod)', f'submodule({prefix}_friction_mod)')
+
+
+def with_a_counter(text: str) -> str:
+    text = renamed(text, 'counted')
+    if 'use counted_friction_' not in text:
+        return text.replace('    integer, parameter, public :: wp', '    integer, public :: evaluations = 0\n    integer, parameter, public :: wp')
+    text = re.sub(r'\bpure ', '', text)
+    text = text.replace('use counted_friction_kinds, only : ', 'use counted_friction_kinds, only : evaluations, ')
+    count = r'\1evaluations = evaluations + 1\n\1\2'
+    text = re.sub(r'( +)(call (?:surface%slide_uncapped|self%slide|slide)\()', count, text)
+    if 'pair (s, ' in text:   # laws whose own method does not call `slide`
+        text = re.sub(r'(        do iteration = 1, max_iterations\n)', r'\1            evaluations = evaluations + 1\n', text)
+    return text
+
+
 def in_quadruple_precision(text: str) -> str:
-    text = re.sub(r'\b((?:sub)?module|use|submodule\(friction_mod\)) friction_', r'\1 quad_friction_', text)
-    text = text.replace('submodule(friction_mod)', 'submodule(quad_friction_mod)')
-    text = text.replace('real64', 'real128')
+    text = renamed(text, 'quad').replace('real64', 'real128')
     # The exponent stands elsewhere in a longer number.
     text = re.sub(r' *pure function oversize\(.*?end function oversize', OVERSIZE, text, flags=re.DOTALL)
     # Iterations stop before a step of which the square or the cube is round-off.
@@ -30,10 +47,11 @@ def in_quadruple_precision(text: str) -> str:
 
 
 def main() -> None:
-    output = pathlib.Path(sys.argv[1])
+    kind, output = sys.argv[1], pathlib.Path(sys.argv[2])
+    copy = {'quad': in_quadruple_precision, 'counted': with_a_counter}[kind]
     output.mkdir(parents=True, exist_ok=True)
-    for source in map(pathlib.Path, sys.argv[2:]):
-        (output / f'quad_{source.name}').write_text(in_quadruple_precision(source.read_text()))
+    for source in map(pathlib.Path, sys.argv[3:]):
+        (output / f'{kind}_{source.name}').write_text(copy(source.read_text()))
 
 
 if __name__ == '__main__':
