@@ -96,7 +96,7 @@ contains
         real(dp), parameter :: round_off = 1.0e-9_dp
         character(len=240) :: text
 
-        if (result%time <= run%drive%measured_until * (1.0_dp + round_off)) return
+        if (result%time * (1.0_dp - round_off) <= run%drive%measured_until) return
         write (text, '(a, es12.5, a, es12.5, a)') 'the file of the drive ends at time ', &
             run%drive%measured_until, ', before t_end = ', run%t_end, ': its last velocity and &
             &normal traction went on'
