@@ -53,6 +53,7 @@ contains
         type(explicit_run), intent(out) :: result
         type(constants) :: c
         type(event_finder) :: finder
+        type(slip_event), allocatable :: events(:)
         type(moment) :: before, now, turn
         real(dp) :: y(unknowns), y_new(unknowns), k(unknowns, stages), tolerated(unknowns)
         real(dp) :: t, dt, error, highest, begun, ended
@@ -63,8 +64,10 @@ contains
         c = constants(run%mass, run%stiffness, run%damping, run%area, run%drive%velocity(1), &
             run%drive%normal(1), run%props(3), run%props(4), run%props(5), run%props(6), &
             run%props(7), run%props(8))
-        finder%threshold = smallest_drop
-        allocate (result%onsets(0))
+        finder%drop = smallest_drop
+        finder%stiffness = c%stiffness
+        call finder%give_sense(c%drive)
+        allocate (result%onsets(0), events(0))
         y = [0.0_dp, 0.0_dp, 0.0_dp, run%props(9)]
         associate (force => c%area * c%mu_s * c%pressure)
             tolerated = rtol * [force / c%stiffness, force / sqrt(c%stiffness * c%mass), &
@@ -89,8 +92,15 @@ contains
                 result%steps = result%steps + 1
                 now = seen(c, t, y)
                 call turning_point(before, now, turn, found)
-                if (found) call look(turn)
-                call look(now)
+                if (found) highest = max(highest, turn%force)
+                highest = max(highest, now%force)
+                call finder%follow(before, now, events)
+                if (size(events) > 0) then
+                    result%onsets = [result%onsets, events%onset]
+                    result%peak_force = highest
+                    highest = now%force
+                    events = events(:0)
+                end if
                 before = now
             else
                 result%rejected = result%rejected + 1
@@ -99,22 +109,6 @@ contains
         end do
         call cpu_time(ended)
         result%seconds = ended - begun
-
-    contains
-
-        subroutine look(at)
-            type(moment), intent(in) :: at
-            type(slip_event) :: event
-            logical :: over
-
-            highest = max(highest, at%force)
-            call finder%look(at, event, over)
-            if (.not. over) return
-            result%onsets = [result%onsets, event%onset]
-            result%peak_force = highest
-            highest = at%force
-        end subroutine look
-
     end subroutine solve_explicitly
 
     !> Time derivatives of the unknowns.
@@ -150,6 +144,8 @@ contains
         now%force = c%stiffness * y(extension)
         now%velocity = y(velocity)
         now%rate = c%stiffness * (c%drive - y(velocity))
+        now%drive = c%drive * t
+        now%slip = now%drive - y(extension) - y(elastic)
     end function seen
 
 end module explicit_slider

@@ -2,11 +2,12 @@
 module reference_problem
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use abstract_integrator, only : step_report
+    use friction_mod, only : statev_slip
     use loading_programme, only : programme
     use run_settings, only : settings
     use simulation, only : simulation_run, start_run
     use slider_system, only : slider_state
-    use slip_events, only : moment, slip_event, turning_point
+    use slip_events, only : event_finder, moment, slip_event, turning_point
     implicit none
     private
 
@@ -29,13 +30,13 @@ contains
         run%damping = damping
         run%drive = programme(start=[0.0_dp], travel=[0.0_dp], velocity=[1.0_dp], &
             acceleration=[0.0_dp], normal=[10.0_dp], normal_rate=[0.0_dp])
+        run%event_drop = 0.01_dp
         run%t_end = t_end
         run%dt = 1.0e-6_dp * t_end
         run%adaptive = present(rtol)
         if (present(dt)) run%dt = dt
         if (present(rtol)) run%rtol = rtol
         run%dt_max = t_end
-        run%dt_min = 1.0e-12_dp * t_end
         run%order = 1 + nint(run%props(10))
         run%interval = huge(run%interval)
         run%n_steps = nint(t_end / run%dt)
@@ -50,41 +51,37 @@ contains
         type(simulation_run) :: live
         type(slider_state) :: new
         type(step_report) :: report
-        type(slip_event) :: seen_event
+        type(event_finder) :: finder
+        type(slip_event), allocatable :: ended(:)
         type(moment) :: before, now, turn
         integer :: events
         logical :: found
 
         call start_run(run, live)
+        finder = live%slip_events%finder
         new = live%state
         events = 0
         peak = 0.0_dp
+        allocate (ended(0))
         before = seen(run, live%state)
-        do while (.not. live%steps%finished(live%state) .and. events < event)
+        do while (.not. live%steps%finished(live%state))
             call live%steps%step(live%state, new, report)
             if (report%status < 0) exit
             now = seen(run, new)
             call turning_point(before, now, turn, found)
-            if (found) call look(turn)
-            call look(now)
+            if (found) peak = max(peak, turn%force)
+            peak = max(peak, now%force)
+            call finder%follow(before, now, ended)
+            if (size(ended) > 0) then
+                events = events + size(ended)
+                onset = ended(size(ended))%onset
+                if (events >= event) exit
+                peak = now%force
+                ended = ended(:0)
+            end if
             before = now
             live%state = new
         end do
-
-    contains
-
-        subroutine look(at)
-            type(moment), intent(in) :: at
-            logical :: over
-
-            if (events < event) peak = max(peak, at%force)
-            call live%slip_events%finder%look(at, seen_event, over)
-            if (.not. over) return
-            events = events + 1
-            onset = seen_event%onset
-            if (events < event) peak = at%force
-        end subroutine look
-
     end subroutine last_peak
 
     pure function seen(run, state) result(now)
@@ -96,6 +93,8 @@ contains
         now%force = state%spring(1)
         now%velocity = state%v(1)
         now%rate = run%stiffness * (run%drive%velocity(1) - state%v(1))
+        now%drive = state%drive
+        now%slip = state%statev(1, statev_slip)
     end function seen
 
 end module reference_problem

@@ -305,16 +305,18 @@ contains
     end subroutine not_solved
 
     !> Resistance in continuous time at a slip rate. A law that depends on the rate overrides this.
-    pure function resistance_at_any_rate(self, state, rate, pressure) result(resistance)
+    pure subroutine resistance_at_any_rate(self, state, rate, pressure, resistance, by_rate)
         class(law), intent(in) :: self
         type(law_state), intent(in) :: state
-        real(wp), intent(in) :: rate         !! slip rate, >= 0 [L/T]
-        real(wp), intent(in) :: pressure     !! contact pressure, >= 0 [F/L^2]
-        real(wp) :: resistance               !! [F/L^2]
+        real(wp), intent(in) :: rate          !! slip rate, >= 0 [L/T]
+        real(wp), intent(in) :: pressure      !! contact pressure, >= 0 [F/L^2]
+        real(wp), intent(out) :: resistance   !! [F/L^2]
+        real(wp), intent(out) :: by_rate      !! its derivative by the rate [F T/L^3]
         type(law_state) :: new
 
         call self%rest(0.0_wp, pressure, 0.0_wp, state, new, resistance)
-    end function resistance_at_any_rate
+        by_rate = 0.0_wp
+    end subroutine resistance_at_any_rate
 
     !> A law that remembers something, or that starts to slip in another way, overrides this.
     pure function simple_traits(self) result(traits)

@@ -78,7 +78,7 @@ contains
         real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
         real(dp) :: critical   ! damping [F T/L]
 
-        if (result%energy%dissipated <= 0.0_dp) return
+        if (result%energy%dissipated <= 0.0_dp .or. run%rigid_contact) return
         if (run%drive%largest_normal() * rate_weakening(run%props) <= run%dt * run%props(3)) return
         if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
@@ -86,7 +86,8 @@ contains
         if (run%damping >= least * critical) return
         warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
             &begins, and the contact spring (alpha_t) rings undamped: periods and stress drops &
-            &depend on it and on dt. Take rho_infinity = 0 in &time, or a damping')]
+            &depend on it. Take rho_infinity = 0 in &time, a damping, or contact = ''rigid'' in &
+            &&friction with adaptive steps')]
     end subroutine look_at_contact
 
     subroutine look_at_file(run, result, warnings)

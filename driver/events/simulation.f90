@@ -6,7 +6,7 @@ module simulation
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, scattered
-    use friction_mod, only : friction_message, friction_snap_back
+    use friction_mod, only : friction_message, friction_snap_back, statev_u_et
     use integrator_choice, only : choose_integrator
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
@@ -55,6 +55,7 @@ contains
         call place(system, run%initial, live%state)
         if (run%chain%displacement_scatter > 0.0_dp) call displace(system, displaced(run%chain), &
             live%state)
+        if (run%rigid_contact) live%state%statev(:, statev_u_et) = 0.0_dp
         call choose_integrator(run, system, live%state, live%steps)
         live%energy_at_start = system%energy_of(live%state)
     end subroutine start_run

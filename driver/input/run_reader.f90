@@ -47,6 +47,7 @@ contains
         call read_time(file, run)
         call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
+        call read_contact(file, run)
         call derive_slip_rate(file, run)
         call read_events(file, run)
         call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
@@ -272,12 +273,31 @@ contains
 
         call file%get_real(group, 'rtol', run%rtol, between(1.0e-12_dp, 0.1_dp))
         call file%get_real(group, 'dt_max', run%dt_max, above(0.0_dp), default=run%t_end)
-        call file%get_real(group, 'dt_min', run%dt_min, above(0.0_dp), &
-            default=1.0e-12_dp * run%t_end)
+        call file%get_real(group, 'dt_min', run%dt_min, above(0.0_dp), default=0.0_dp)
         call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
         run%order = merge(2, 1, is_second_order(run%props))
+        run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
+            file%given(group, 'rho_infinity')])
     end subroutine read_adaptive
+
+    !> The spring of the contact, which continuous time can do without.
+    subroutine read_contact(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'friction', key = 'contact'
+        character(len=:), allocatable :: contact
+
+        call file%get_choice(group, key, contact, ['elastic', 'rigid  '], default='elastic')
+        run%rigid_contact = contact == 'rigid'
+        if (.not. run%rigid_contact) return
+        if (.not. run%adaptive .or. run%newmark .or. run%chain%n_blocks > 1) call file%reject( &
+            group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
+            // 'rho_infinity')
+        if (.not. allocated(run%props)) return
+        if (is_subloading(run%props)) call file%reject(group, key, &
+            'is not for the law subloading, whose R needs the contact spring')
+    end subroutine read_contact
 
 end module run_reader

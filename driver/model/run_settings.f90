@@ -22,6 +22,8 @@ module run_settings
         real(dp) :: t_end = 0.0_dp, dt = 0.0_dp   !! end of the run, step or first step, > 0 [T]
         real(dp) :: checkpoint = 60.0_dp    !! time between two checkpoints, by the clock [s]
         logical :: adaptive = .false.       !! the error chooses the steps
+        logical :: newmark = .false.        !! and they are Newmark's, as those of chains are
+        logical :: rigid_contact = .false.  !! no contact spring: its slip rate is the velocity
         real(dp) :: rtol = 0.0_dp           !! error in a step, part of the static friction force
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
         integer :: order = 1                !! of the method with the friction law in it

@@ -2,6 +2,7 @@
 module integrator_choice
     use abstract_integrator, only : integrator
     use adaptive_steps, only : adaptive
+    use continuous_steps, only : continuous
     use fixed_steps, only : fixed
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
@@ -18,7 +19,9 @@ contains
         type(slider_state), intent(in) :: start   !! the state at time 0
         class(integrator), allocatable, intent(out) :: chosen
 
-        if (run%adaptive) then
+        if (run%adaptive .and. .not. run%newmark .and. run%chain%n_blocks == 1) then
+            allocate (continuous :: chosen)
+        else if (run%adaptive) then
             allocate (adaptive :: chosen)
         else
             allocate (fixed :: chosen)

@@ -7,14 +7,7 @@ module turning_times
     implicit none
     private
 
-    public :: next_turn, oscillation_of, turn, visible_swing
-
-    !> How a block would swing on its springs, were it not damped.
-    type :: oscillation
-        real(dp) :: omega       !! [1/T]
-        real(dp) :: mean        !! of the velocity [L/T]
-        real(dp) :: amplitude   !! of the velocity [L/T]
-    end type oscillation
+    public :: turn
 
 contains
 
@@ -67,58 +60,5 @@ contains
             time = min(time, a%time + s * dt)
         end do
     end function turn
-
-    !> When a block that swings begins or ends to slip next. Huge if it never does, or if it swings
-    !> by no more than a force that does not matter.
-    pure function next_turn(system, state, swing, negligible) result(time)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: state   !! of one block, with a mass
-        type(oscillation), intent(in) :: swing    !! of that block
-        real(dp), intent(in) :: negligible        !! [F]
-        real(dp) :: time                          !! [T]
-        real(dp), parameter :: just_turned = 0.01_dp, pi = acos(-1.0_dp)
-        real(dp) :: sticking, phase, reach
-
-        time = huge(time)
-        if (system%mass * swing%omega * swing%amplitude <= negligible) return
-        sticking = sticking_velocity(system, state, 1, 0.0_dp)
-        if (swing%amplitude <= abs(sticking - swing%mean)) return
-        phase = atan2(state%a(1) / swing%omega, state%v(1) - swing%mean)   ! of the velocity's crest
-        reach = acos((sticking - swing%mean) / swing%amplitude)            ! from there to a turn
-        phase = min(modulo(phase - reach - just_turned, 2.0_dp * pi), &
-            modulo(phase + reach - just_turned, 2.0_dp * pi)) + just_turned
-        time = state%time + phase / swing%omega
-    end function next_turn
-
-    !> The longest step that shows how the force of the drive spring swings; huge if that does not
-    !> swing by as much as one would notice.
-    pure function visible_swing(system, swing, noticed) result(dt)
-        type(slider), intent(in) :: system
-        type(oscillation), intent(in) :: swing   !! of one block
-        real(dp), intent(in) :: noticed          !! [F]
-        real(dp) :: dt                           !! [T]
-        real(dp), parameter :: twelfth = acos(-1.0_dp) / 6.0_dp   !! of a period [-]
-
-        dt = huge(dt)
-        if (system%stiffness * swing%amplitude > noticed * swing%omega) dt = twelfth / swing%omega
-    end function visible_swing
-
-    !> The velocity swings about the one with which the drive pulls the springs along. A block whose
-    !> damper keeps it from swinging has no amplitude.
-    pure function oscillation_of(system, state, contact, velocity) result(swing)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: state   !! of one block, with a mass
-        real(dp), intent(in) :: contact           !! stiffness of the contact, >= 0 [F/L]
-        real(dp), intent(in) :: velocity          !! of the drive [L/T]
-        type(oscillation) :: swing
-        real(dp) :: stiffness
-
-        stiffness = system%stiffness + contact
-        swing%omega = sqrt(stiffness / system%mass)
-        swing%mean = system%stiffness * velocity / stiffness
-        swing%amplitude = 0.0_dp
-        if (system%damping**2 < 4.0_dp * system%mass * stiffness) swing%amplitude = &
-            hypot(state%v(1) - swing%mean, state%a(1) / swing%omega)
-    end function oscillation_of
 
 end module turning_times

@@ -417,14 +417,14 @@ contains
     end function creep
 
     !> The slip rate that the traction asks for, 2 v0 sinh(tau/(a p)) exp(-(f0 + b ln(v0
-    !> theta/d_c))/a), short of what would overflow.
+    !> theta/d_c))/a), as far as that is a number to go on with.
     pure subroutine slip_rate(self, state, load, rate, jumps)
         class(rate_state_law), intent(in) :: self
         type(law_state), intent(in) :: state
         type(load_rates), intent(in) :: load
         real(wp), intent(out) :: rate
         logical, intent(out) :: jumps
-        real(wp), parameter :: ln_most = 200.0_wp
+        real(wp), parameter :: ln_most = 70.0_wp   ! of the slip rate, in units of v0
         real(wp) :: x, psi
 
         jumps = .false.
@@ -455,16 +455,18 @@ contains
             - load%traction / load%pressure * load%pressure_rate) / load%pressure
     end function state_rates
 
-    pure function resistance_at(self, state, rate, pressure) result(resistance)
+    pure subroutine resistance_at(self, state, rate, pressure, resistance, by_rate)
         class(rate_state_law), intent(in) :: self
         type(law_state), intent(in) :: state
         real(wp), intent(in) :: rate, pressure
-        real(wp) :: resistance
+        real(wp), intent(out) :: resistance, by_rate
+        real(wp) :: x, floor
 
-        resistance = 0.0_wp
-        if (rate > 0.0_wp) resistance = self%a * pressure * asinh_exp(direct_exponent(self, rate, &
-            1.0_wp, log(state%r)))
-    end function resistance_at
+        floor = tiny(rate) / epsilon(rate)
+        x = direct_exponent(self, max(rate, floor), 1.0_wp, log(state%r))
+        resistance = self%a * pressure * asinh_exp(x)
+        by_rate = self%a * pressure * slope_asinh_exp(x) / max(rate, floor)
+    end subroutine resistance_at
 
     pure function traits(self)
         class(rate_state_law), intent(in) :: self

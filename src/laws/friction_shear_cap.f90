@@ -128,7 +128,7 @@ contains
         real(wp), intent(out) :: rate
         logical, intent(out) :: jumps
         type(law_state) :: new
-        real(wp) :: own, strength
+        real(wp) :: own, strength, resistance, by_rate
 
         if (below(load, self%tau_max)) then
             call self%inner%slip_rate(state, load, rate, jumps)
@@ -138,7 +138,8 @@ contains
         rate = max(0.0_wp, load%loading) / load%stiffness
         call self%inner%rest(load%traction, load%pressure, 0.0_wp, state, new, strength)
         if (below(load, strength)) then
-            jumps = self%inner%resistance_at(state, rate, load%pressure) < self%tau_max
+            call self%inner%resistance_at(state, rate, load%pressure, resistance, by_rate)
+            jumps = resistance < self%tau_max
         else
             call self%inner%slip_rate(state, load, own, jumps)
             rate = max(rate, own)
@@ -155,14 +156,17 @@ contains
         rates = self%inner%state_rates(state, load, slip_rate)
     end function state_rates
 
-    pure function resistance_at(self, state, rate, pressure) result(resistance)
+    pure subroutine resistance_at(self, state, rate, pressure, resistance, by_rate)
         class(capped_law), intent(in) :: self
         type(law_state), intent(in) :: state
         real(wp), intent(in) :: rate, pressure
-        real(wp) :: resistance
+        real(wp), intent(out) :: resistance, by_rate
 
-        resistance = min(self%inner%resistance_at(state, rate, pressure), self%tau_max)
-    end function resistance_at
+        call self%inner%resistance_at(state, rate, pressure, resistance, by_rate)
+        if (resistance < self%tau_max) return
+        resistance = self%tau_max
+        by_rate = 0.0_wp
+    end subroutine resistance_at
 
     pure function traits(self)
         class(capped_law), intent(in) :: self

@@ -194,14 +194,17 @@ contains
         rates = law_state(mu=0.0_wp, r=0.0_wp)
     end function state_rates
 
-    pure function resistance_at(self, state, rate, pressure) result(resistance)
+    pure subroutine resistance_at(self, state, rate, pressure, resistance, by_rate)
         class(static_kinetic_law), intent(in) :: self
         type(law_state), intent(in) :: state
         real(wp), intent(in) :: rate, pressure
-        real(wp) :: resistance
+        real(wp), intent(out) :: resistance, by_rate
+        real(wp) :: excess
 
-        resistance = (self%mu_k + (self%mu_s - self%mu_k) * exp(-self%d_c * rate)) * pressure
-    end function resistance_at
+        excess = (self%mu_s - self%mu_k) * exp(-self%d_c * rate) * pressure
+        resistance = self%mu_k * pressure + excess
+        by_rate = -self%d_c * excess
+    end subroutine resistance_at
 
     pure function traits(self)
         class(static_kinetic_law), intent(in) :: self

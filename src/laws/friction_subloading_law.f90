@@ -417,14 +417,13 @@ contains
         jumps = .false.
         rate = 0.0_wp
         full = state%mu * load%pressure
-        slope = load%stiffness
-        if (full > 0.0_wp) then
-            if (.not. (state%r > 0.0_wp .and. load%traction > 0.0_wp)) return
-            slope = slope + full * self%m * self%u_of(state%r) - state%r * load%pressure &
-                * self%kappa * (state%mu - self%mu_k)
-        end if
+        if (full > 0.0_wp .and. .not. (state%r > 0.0_wp .and. load%traction > 0.0_wp)) return
         rate = load%loading - state%r * strength_rate(self, state, load)
         if (.not. load%sliding) rate = max(0.0_wp, rate)
+        if (.not. abs(rate) > 0.0_wp) return
+        slope = load%stiffness
+        if (full > 0.0_wp) slope = slope + full * self%m * self%u_of(state%r) - state%r &
+            * load%pressure * self%kappa * (state%mu - self%mu_k)
         jumps = rate > 0.0_wp .and. slope <= 0.0_wp
         if (slope > 0.0_wp) rate = rate / slope
     end subroutine slip_rate

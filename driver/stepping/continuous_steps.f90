@@ -1,0 +1,667 @@
+!> Adaptive steps of one block in continuous time: the rate equations of module `slider_rates` by
+!> Dormand and Prince's method where they are not stiff, by Rodas4 where they are. Both take each
+!> step from the state alone, so that a run goes on from a checkpoint as if it had never stopped.
+!>
+!> Steps end where a phase of the contact ends, found by taking them again until they do.
+module continuous_steps
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : integrator, step_report
+    use archive_file, only : archive
+    use dormand_prince, only : dormand_prince_step
+    use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
+        friction_update, law_state, onset_drops, onset_gradual, onset_yields, read_surface, &
+        statev_dissipation, statev_mu, statev_r, statev_size, statev_slip, statev_status, &
+        statev_u_et, statev_u_n
+    use law_facts, only : typical_coefficient
+    use rosenbrock, only : rosenbrock_step
+    use run_settings, only : settings
+    use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
+        memory, phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
+        switches, unknowns, velocity
+    use slider_system, only : apply_normal_traction, slider, slider_state
+    use step_ends, only : end_of_step, find_opening, next_limit
+    implicit none
+    private
+
+    public :: continuous
+
+    !> Part of the time that no step is shorter than.
+    real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
+
+    type, extends(integrator) :: continuous
+        type(slider_equations) :: equations
+        real(dp) :: y(unknowns) = 0.0_dp        !! where the block is
+        real(dp) :: first(unknowns) = 0.0_dp    !! rates there
+        logical :: known = .false.              !! they are up to date
+        real(dp) :: dt = 0.0_dp                 !! next to try [T]
+        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
+        real(dp) :: every = 0.0_dp   !! steps end at multiples of this time, unless it is 0 [T]
+        real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
+        real(dp) :: rtol = 0.0_dp
+        real(dp) :: natural(controlled) = 0.0_dp    !! sizes of the unknowns
+        real(dp) :: weights(controlled) = 0.0_dp    !! inverse of the errors tolerated in a step
+        logical :: implicit = .false.           !! steps by Rodas4
+        integer :: stiff = 0, calm = 0          !! steps that spoke for the other method
+        logical :: jumped = .false.             !! slip had no rate in the last attempt
+        real(dp) :: open_below = 0.0_dp         !! normal traction that counts as none [F/L^2]
+    contains
+        procedure :: prepare, step, visit, why_stopped
+        procedure, private :: take_pressure, settle, attempt, locate, switch, jump, choose_method, &
+            set_weights, fill
+    end type continuous
+
+    !> A step that has been tried.
+    type :: trial
+        real(dp) :: h                !! [T]
+        real(dp) :: y(unknowns)      !! its end
+        real(dp) :: last(unknowns)   !! rates there
+        real(dp) :: error            !! part of the tolerated one
+        real(dp) :: stiffness        !! h times the size of the equations' derivative
+        integer :: switch            !! which way its phase has ended; 0: it has not
+    end type trial
+
+contains
+
+    subroutine prepare(self, run, system, start)
+        class(continuous), intent(inout) :: self
+        type(settings), intent(in) :: run
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: start
+        !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
+        !> what the law remembers, how many steps are taken by the contact spring.
+        real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        real(dp) :: force, stiffness
+        integer :: status
+
+        call self%take_run(run, system, start)
+        self%dt = run%dt
+        self%dt_min = run%dt_min
+        self%dt_max = run%dt_max
+        if (run%drive%amplitude > 0.0_dp) self%dt_max = min(run%dt_max, 1.0_dp &
+            / (16.0_dp * run%drive%frequency))
+        self%every = run%every
+        self%rtol = run%rtol
+        associate (eq => self%equations)
+            call read_surface(run%props, eq%surface, status)
+            eq%mass = run%mass
+            eq%stiffness = run%stiffness
+            eq%damping = run%damping
+            eq%area = run%area
+            eq%alpha = run%props(3)
+            eq%rigid = run%rigid_contact
+            eq%drive = run%drive
+            eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
+            self%implicit = eq%surface%traits%stiff
+            ! as the traction vanishes, the slip rates of rate-and-state friction have no bound;
+            ! what is left out is an impulse, and of the order of the square
+            if (self%implicit) self%open_below = 1.0e-2_dp * sqrt(run%rtol) &
+                * run%drive%largest_normal()
+            force = run%area * typical_coefficient(run%props) * run%drive%largest_normal()
+            stiffness = run%stiffness
+            if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
+            self%natural(extension) = force / stiffness
+            self%natural(velocity) = 1.0_dp
+            if (run%mass > 0.0_dp) self%natural(velocity) = force / sqrt(stiffness * run%mass)
+            self%natural(elastic) = force / (run%area * eq%alpha)
+            self%natural(memory) = 1.0_dp
+            if (eq%surface%traits%weight > 0.0_dp) self%natural(memory) = &
+                typical_coefficient(run%props) / eq%surface%traits%weight
+            self%natural(ratio) = 1.0_dp
+            if (eq%surface%traits%stiff) self%natural = self%natural * stiff_sizes
+            self%weights = 1.0_dp / (self%rtol * self%natural)
+            call synchronise(self, start)
+            eq%phase = phase_stick
+            if (eq%surface%traits%onset == onset_gradual) eq%phase = phase_slide
+            if (start%normal <= self%open_below) eq%phase = phase_open
+            eq%sense = sign(1.0_dp, self%y(elastic))
+            if (eq%rigid) then
+                eq%sense = sign(1.0_dp, start%v(1))
+                if (abs(start%v(1)) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
+                self%y(elastic) = 0.0_dp
+            end if
+        end associate
+    end subroutine prepare
+
+    !> Takes the unknowns from a state.
+    pure subroutine synchronise(self, state)
+        class(continuous), intent(inout) :: self
+        type(slider_state), intent(in) :: state
+
+        self%y(extension) = state%spring(1) / self%system%stiffness
+        self%y(velocity) = state%v(1)
+        self%y(elastic) = state%statev(1, statev_u_et)
+        select case (self%equations%surface%traits%memory)
+        case (1)
+            self%y(memory) = state%statev(1, statev_mu)
+        case (2)
+            self%y(memory) = state%statev(1, statev_r)
+            if (self%equations%surface%traits%logarithmic) self%y(memory) = log(self%y(memory))
+        case default   ! it remembers nothing
+        end select
+        self%y(slip) = state%statev(1, statev_slip)
+        self%y(drive_work) = state%drive_work
+        self%y(damped) = state%damped
+        self%y(dissipated) = state%statev(1, statev_dissipation)
+        self%known = .false.
+    end subroutine synchronise
+
+    subroutine step(self, old, new, report)
+        class(continuous), intent(inout) :: self
+        type(slider_state), intent(inout) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(out) :: report
+        type(trial) :: tried
+        real(dp) :: end, wanted, grown, before, opening
+        integer :: piece
+        logical :: again
+
+        piece = self%drive%piece(old%time)
+        if (piece /= self%equations%piece) then
+            call self%equations%enter(piece)
+            self%known = .false.
+        end if
+        call self%take_pressure(old, piece)
+        if (old%time >= self%limit) self%limit = next_limit(self%drive, self%every, self%t_end, &
+            4.0_dp * shortest, old%time)
+        call self%settle(old%time)
+        again = .false.
+        do
+            wanted = min(self%dt, self%dt_max)
+            end = end_of_step(old%time, wanted, self%limit)
+            if (.not. self%equations%steady) then
+                call find_opening(self%drive, piece, self%open_below, self%equations%phase &
+                    == phase_open, old%time, end, before, opening)
+                end = min(end, opening)
+            end if
+            tried%h = end - old%time
+            call self%attempt(old%time, tried)
+            if (tried%error <= 1.0_dp) exit
+            self%rejected = self%rejected + 1
+            again = .true.
+            self%dt = tried%h * max(0.2_dp, 0.9_dp * tried%error**(-1.0_dp / order_of(self)))
+            if (self%dt < max(self%dt_min, shortest * old%time)) then
+                report%status = friction_no_convergence
+                if (self%jumped) report%status = friction_no_rate
+                return
+            end if
+        end do
+        grown = tried%h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(tried%error, 1.0e-10_dp) &
+            **(-1.0_dp / order_of(self)))
+        if (tried%h < 0.99_dp * wanted) grown = max(grown, wanted)   ! the limit has cut it
+        self%dt = grown
+        call self%locate(old%time, tried)
+        if (tried%switch > 0) end = old%time + tried%h
+        call self%choose_method(tried)
+        self%y = tried%y
+        self%first = tried%last
+        self%known = self%equations%steady .and. .not. self%implicit .and. tried%switch == 0
+        if (tried%switch > 0) call self%switch(end, tried%switch)
+        call self%fill(end, piece, old, new)
+    end subroutine step
+
+    !> Order of the estimate of the error.
+    pure function order_of(self) result(order)
+        class(continuous), intent(in) :: self
+        real(dp) :: order
+
+        order = merge(4.0_dp, 5.0_dp, self%implicit)
+    end function order_of
+
+    !> Sudden changes of the normal traction, opening and touchdown.
+    subroutine take_pressure(self, state, piece)
+        class(continuous), intent(inout) :: self
+        type(slider_state), intent(inout) :: state
+        integer, intent(in) :: piece
+        real(dp) :: pressure
+        logical :: taken
+
+        pressure = self%drive%normal_traction(state%time, piece)
+        associate (eq => self%equations)
+            if (pressure > self%open_below .and. eq%phase /= phase_open) then
+                if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
+                call apply_normal_traction(self%system, pressure, state, taken)
+                self%known = .false.
+                if (eq%rigid) return
+                if (taken) then
+                    call synchronise(self, state)
+                else
+                    call relieve(self, state%time, pressure)
+                end if
+                if (eq%surface%traits%onset /= onset_gradual) eq%phase = phase_stick
+                if (eq%phase == phase_capped) eq%phase = phase_slide
+            else if (pressure > self%open_below .eqv. eq%phase == phase_open) then
+                eq%phase = phase_open
+                if (pressure > self%open_below) eq%phase = merge(phase_slide, phase_stick, &
+                    eq%surface%traits%onset == onset_gradual)
+                self%y(elastic) = 0.0_dp
+                if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) self%y(extension) = 0.0_dp
+                self%known = .false.
+            end if
+        end associate
+    end subroutine take_pressure
+
+    !> A creeping contact that is relieved may slip at once: as far as the friction routine lets it
+    !> in a time that is lost in round-off, should that be far.
+    subroutine relieve(self, t, pressure)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t, pressure   !! [T], [F/L^2]
+        real(dp), parameter :: far = 1.0e-3_dp   !! part of the elastic displacement
+        real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
+        integer :: status
+
+        associate (eq => self%equations, y => self%y)
+            if (.not. eq%surface%traits%stiff) return
+            statev = 0.0_dp
+            statev(statev_status) = 1.0_dp
+            statev(statev_u_n) = -pressure / self%system%props(2)
+            statev(statev_u_et) = abs(y(elastic))
+            statev(statev_r) = exp(y(memory))
+            call friction_update([0.0_dp, 0.0_dp], 16.0_dp * shortest * max(t, self%dt_min), &
+                self%system%props, statev, traction, tangent, status)
+            if (status < 0 .or. statev(statev_slip) < far * abs(y(elastic))) return
+            y(slip) = y(slip) + statev(statev_slip)
+            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (y(elastic)**2 &
+                - statev(statev_u_et)**2)
+            y(elastic) = sign(statev(statev_u_et), y(elastic))
+            y(memory) = log(statev(statev_r))
+        end associate
+    end subroutine relieve
+
+    !> Rates at the start of a step, in the phase that holds there.
+    subroutine settle(self, t)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        integer, parameter :: most_switches = 6
+        real(dp), parameter :: round_off = 1.0e-12_dp
+        real(dp) :: g(switches), v_drive, pressure, pressure_rate
+        logical :: failed, slides
+        integer :: i
+
+        associate (eq => self%equations)
+            do i = 1, most_switches
+                if (.not. self%known) call eq%rates(t, self%y, self%first, failed)
+                if (.not. self%known .and. .not. failed) self%known = .true.
+                if (eq%phase == phase_open) return
+                g = eq%switch_values(t, self%y, self%first)
+                if (eq%phase == phase_stick) then
+                    call eq%inputs(t, v_drive, pressure, pressure_rate)
+                    if (g(1) < -round_off * eq%strength(self%y, pressure)) return
+                    slides = would_slide(self, t)
+                    if (.not. (slides .and. (g(1) > 0.0_dp .or. .not. eq%rigid))) return
+                    call self%switch(t, 1)
+                else if (g(1) > 0.0_dp .or. g(2) > 0.0_dp) then
+                    call self%switch(t, merge(1, 2, g(1) > 0.0_dp))
+                else
+                    return
+                end if
+            end do
+        end associate
+    end subroutine settle
+
+    !> Would a contact at its strength slide on?
+    function would_slide(self, t) result(slides)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        logical :: slides
+        type(slider_equations) :: sliding
+        real(dp) :: dy(unknowns)
+        logical :: failed
+
+        slides = .true.
+        if (self%equations%rigid) return
+        sliding = self%equations
+        sliding%phase = phase_slide
+        sliding%sense = sign(1.0_dp, self%y(elastic))
+        if (sliding%surface%tau_max < huge(1.0_dp)) sliding%phase = phase_capped
+        if (sliding%surface%traits%onset == onset_drops) sliding%phase = phase_capped
+        call sliding%rates(t, self%y, dy, failed)
+        slides = dy(slip) > 0.0_dp .or. failed
+    end function would_slide
+
+    !> Takes a step by the method in use.
+    subroutine attempt(self, t, tried)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried   !! its length is given
+        real(dp) :: scales(2, controlled), growth
+        logical :: failed
+        integer, parameter :: explicit_stages = 6, implicit_stages = 10
+
+        tried%switch = 0
+        tried%error = huge(tried%error)
+        self%jumped = .not. self%known
+        if (.not. self%known) return
+        call self%set_weights(t)
+        if (self%implicit) then
+            scales(1, :) = self%weights
+            scales(2, :) = self%natural
+            call rosenbrock_step(self%equations, t, tried%h, self%y, self%first, scales, tried%y, &
+                tried%error, growth)
+            tried%stiffness = tried%h * growth
+            if (tried%error <= 1.0_dp) then
+                call self%equations%rates(t + tried%h, tried%y, tried%last, failed)
+                if (failed) tried%error = huge(tried%error)
+                if (.not. self%system%mass > 0.0_dp) call damp(self, t, tried)
+            end if
+        else
+            call dormand_prince_step(self%equations, t, tried%h, self%y, self%first, &
+                self%weights, tried%y, tried%last, tried%error, tried%stiffness)
+        end if
+        call self%count_iterations(merge(implicit_stages, explicit_stages, self%implicit))
+        self%jumped = .not. tried%error < huge(tried%error)
+    end subroutine attempt
+
+    !> What the damper takes of a block without mass, whose velocity is a small difference of
+    !> forces: within a long step of Rodas4 it is not well enough known to be squared, its mean is.
+    pure subroutine damp(self, t, tried)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp) :: way, v(2)
+
+        associate (d => self%drive, i => self%equations%piece)
+            way = tried%h * 0.5_dp * (d%drive_velocity(t, i) + d%drive_velocity(t + tried%h, i)) &
+                - (tried%y(extension) - self%y(extension))
+            v = [d%drive_velocity(t, i) - self%first(extension), &
+                d%drive_velocity(t + tried%h, i) - tried%last(extension)]
+        end associate
+        tried%y(damped) = self%y(damped) + 0.5_dp * self%system%damping * sum(v) * way
+    end subroutine damp
+
+    !> What the error of each unknown is held against: what moves, but not less than what the
+    !> contact rings by.
+    subroutine set_weights(self, t)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), parameter :: tight = 1.0e-4_dp   !! of traction over pressure, part of friction
+        real(dp) :: v_drive, pressure, pressure_rate
+
+        self%weights(velocity) = 1.0_dp / (self%rtol * max(self%natural(velocity), &
+            abs(self%y(velocity))))
+        self%weights(extension) = 1.0_dp / (self%rtol * max(self%natural(extension), &
+            abs(self%y(extension))))
+        if (self%equations%steady .or. .not. self%equations%surface%traits%stiff) return
+        ! what counts for slip that goes with an exponential is traction over pressure
+        call self%equations%inputs(t, v_drive, pressure, pressure_rate)
+        self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
+            * max(pressure, self%open_below) / self%drive%largest_normal()))
+    end subroutine set_weights
+
+    !> Ends a step where its phase does, if it has ended.
+    subroutine locate(self, t, tried)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t                 !! [T]
+        type(trial), intent(inout) :: tried
+        integer, parameter :: most_tries = 40
+        real(dp), parameter :: close = 1.0e-12_dp
+        type(trial) :: again
+        real(dp) :: g(switches), low, high, g_low, g_high, middle, share
+        integer :: i, which, side
+
+        g = self%equations%switch_values(t + tried%h, tried%y, tried%last)
+        if (self%y(memory) >= self%equations%surface%traits%kink) g(3) = -1.0_dp
+        if (all(g <= 0.0_dp)) return
+        which = 0
+        share = 2.0_dp
+        do i = 1, switches
+            if (g(i) <= 0.0_dp) cycle
+            middle = first_root(self, t, tried, i)
+            if (middle < share) which = i
+            share = min(share, middle)
+        end do
+        low = 0.0_dp
+        high = tried%h
+        g_low = -g(which)   ! the start is before the end of the phase, whatever round-off says
+        g_high = g(which)
+        side = 0
+        again = tried
+        middle = share * tried%h
+        do i = 1, most_tries
+            again%h = middle
+            call self%attempt(t, again)
+            if (.not. again%error < huge(again%error)) exit
+            g = self%equations%switch_values(t + middle, again%y, again%last)
+            if (g(which) > 0.0_dp) then
+                high = middle
+                g_high = g(which)
+                if (side == 1) g_low = 0.5_dp * g_low
+                side = 1
+            else
+                low = middle
+                g_low = g(which)
+                if (side == -1) g_high = 0.5_dp * g_high
+                side = -1
+            end if
+            tried = again
+            middle = (low * g_high - high * g_low) / (g_high - g_low)
+            if (.not. (middle > low .and. middle < high)) middle = 0.5_dp * (low + high)
+            if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * shortest * t)) exit
+        end do
+        tried%switch = which
+    end subroutine locate
+
+    !> Where a switch value first becomes positive on the cubic through the ends of a step, part of
+    !> the step.
+    function first_root(self, t, tried, which) result(share)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t          !! [T]
+        type(trial), intent(in) :: tried
+        integer, intent(in) :: which
+        real(dp) :: share
+        integer, parameter :: bisections = 20
+        real(dp) :: low, middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
+        logical :: failed
+        integer :: i
+
+        low = 0.0_dp
+        share = 1.0_dp
+        change = tried%y - self%y
+        do i = 1, bisections
+            middle = 0.5_dp * (low + share)
+            y = self%y + middle * change + middle * (middle - 1.0_dp) * ((1.0_dp - 2.0_dp &
+                * middle) * change + tried%h * ((middle - 1.0_dp) * self%first + middle &
+                * tried%last))
+            call self%equations%rates(t + middle * tried%h, y, dy, failed)
+            g = self%equations%switch_values(t + middle * tried%h, y, dy)
+            if (g(which) > 0.0_dp) then
+                share = middle
+            else
+                low = middle
+            end if
+        end do
+    end function first_root
+
+    !> Enters the next phase.
+    subroutine switch(self, t, which)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        integer, intent(in) :: which
+        real(dp) :: v_drive, pressure, pressure_rate, strength
+
+        self%known = .false.
+        associate (eq => self%equations)
+            call eq%inputs(t, v_drive, pressure, pressure_rate)
+            strength = min(eq%strength(self%y, pressure), eq%surface%tau_max)
+            if (which == 3) then
+                self%y(memory) = eq%surface%traits%kink
+            else if (eq%phase == phase_stick) then
+                eq%sense = sign(1.0_dp, eq%traction(t, self%y))
+                eq%phase = phase_slide
+                if (eq%surface%traits%onset == onset_yields .and. .not. strength &
+                    < eq%surface%tau_max .and. .not. eq%rigid) eq%phase = phase_capped
+                if (.not. eq%rigid) call self%jump(pressure, strength)
+            else if (which == 1) then
+                eq%phase = merge(phase_slide, phase_stick, eq%surface%traits%onset &
+                    == onset_gradual)
+                if (eq%rigid) self%y(velocity) = 0.0_dp
+            else if (eq%phase == phase_slide) then
+                eq%phase = phase_capped
+                eq%sense = sign(1.0_dp, self%y(elastic))
+                self%y(elastic) = eq%sense * eq%surface%tau_max / eq%alpha
+                if (eq%surface%traits%memory == 1) self%y(ratio) = min(1.0_dp, eq%surface%tau_max &
+                    / (self%y(memory) * pressure))
+            else
+                eq%phase = phase_slide
+            end if
+        end associate
+    end subroutine switch
+
+    !> Onset of slip under a law with a yield point. Where the resistance falls faster than the
+    !> contact spring unloads, that goes on at once to where it does not.
+    subroutine jump(self, pressure, strength)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp), intent(in) :: strength   !! [F/L^2]
+        real(dp) :: before, after, by_rate, statev(statev_size), traction(2), tangent(2, 2)
+        integer :: status
+
+        associate (eq => self%equations)
+            before = abs(self%y(elastic))
+            self%y(elastic) = eq%sense * strength / eq%alpha
+            if (eq%phase == phase_capped) return
+            if (eq%surface%traits%onset == onset_drops) then
+                call eq%surface%law%resistance_at(eq%law_state_of(self%y, pressure), max(0.0_dp, &
+                    eq%sense * self%y(velocity)), pressure, after, by_rate)
+                after = min(after, eq%surface%tau_max) / eq%alpha
+                self%y(elastic) = eq%sense * after
+                self%y(slip) = self%y(slip) + max(0.0_dp, before - after)
+                self%y(dissipated) = self%y(dissipated) + max(0.0_dp, 0.5_dp * eq%alpha &
+                    * (before**2 - after**2))
+            else if (eq%surface%traits%memory == 2) then
+                statev = 0.0_dp
+                statev(statev_status) = 1.0_dp
+                statev(statev_u_n) = -pressure / self%system%props(2)
+                statev(statev_u_et) = before
+                statev(statev_r) = self%y(memory)
+                call friction_update([0.0_dp, 1.0e-12_dp * before], 0.0_dp, self%system%props, &
+                    statev, traction, tangent, status)
+                if (status < 0 .or. statev(statev_slip) < 1.0e-6_dp * before) return
+                self%y(elastic) = eq%sense * statev(statev_u_et)
+                self%y(memory) = statev(statev_r)
+                self%y(slip) = self%y(slip) + statev(statev_slip)
+                self%y(dissipated) = self%y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
+                    - statev(statev_u_et)**2)
+            end if
+        end associate
+    end subroutine jump
+
+    !> The other method, when fifteen steps have spoken for it, or three the other way.
+    subroutine choose_method(self, tried)
+        class(continuous), intent(inout) :: self
+        type(trial), intent(in) :: tried
+        real(dp), parameter :: bound = 3.25_dp   !! of Dormand and Prince's method, on the real axis
+        integer, parameter :: most_stiff = 15, most_calm = 6, few_calm = 3
+
+        if (self%equations%surface%traits%stiff) return
+        if (self%implicit) then
+            self%calm = merge(self%calm + 1, 0, self%dt / tried%h * tried%stiffness < 3.0_dp)
+            if (self%calm < few_calm) return
+            self%implicit = .false.
+        else
+            if (tried%stiffness > bound) then
+                self%stiff = self%stiff + 1
+                self%calm = 0
+            else
+                self%calm = self%calm + 1
+                if (self%calm >= most_calm) self%stiff = 0
+            end if
+            if (self%stiff < most_stiff) return
+            self%implicit = .true.
+        end if
+        self%stiff = 0
+        self%calm = 0
+    end subroutine choose_method
+
+    !> The state at the end of a step.
+    subroutine fill(self, t, piece, old, new)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        integer, intent(in) :: piece
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        type(law_state) :: state
+        real(dp) :: pressure, strength, dy(unknowns)
+        logical :: failed
+
+        ! what accumulates never falls, not even by round-off
+        self%y(slip) = max(self%y(slip), old%statev(1, statev_slip))
+        self%y(dissipated) = max(self%y(dissipated), old%statev(1, statev_dissipation))
+        associate (eq => self%equations, y => self%y)
+            new%time = t
+            new%drive = self%origin + self%drive%position(t)
+            new%normal = self%drive%normal_traction(t, piece)
+            new%drive_work = y(drive_work)
+            new%damped = y(damped)
+            new%x(1) = new%drive - y(extension)
+            new%spring(1) = self%system%stiffness * y(extension)
+            new%friction(1) = self%system%area * eq%traction(t, y)
+            if (self%known) then
+                dy = self%first
+            else
+                call eq%rates(t, y, dy, failed)
+            end if
+            new%v(1) = y(velocity)
+            if (.not. eq%mass > 0.0_dp) new%v(1) = self%drive%drive_velocity(t, piece) &
+                - dy(extension)
+            new%a(1) = dy(velocity)
+
+            pressure = 0.0_dp
+            if (eq%phase /= phase_open) pressure = max(new%normal, eq%least_pressure)
+            state = eq%law_state_of(y, pressure)
+            new%statev(1, statev_status) = 3.0_dp
+            if (eq%phase /= phase_open) new%statev(1, statev_status) = merge(2.0_dp, 1.0_dp, &
+                dy(slip) > 0.0_dp)
+            new%statev(1, statev_u_n) = -new%normal / self%system%props(2)
+            new%statev(1, statev_u_et) = y(elastic)
+            new%statev(1, statev_r) = state%r
+            if (eq%surface%traits%memory == 1) then
+                new%statev(1, statev_mu) = state%mu
+            else if (pressure > 0.0_dp) then
+                strength = abs(eq%traction(t, y))
+                if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
+                new%statev(1, statev_mu) = strength / pressure
+            end if
+            new%statev(1, statev_slip) = y(slip)
+            new%statev(1, statev_dissipation) = y(dissipated)
+        end associate
+    end subroutine fill
+
+    subroutine visit(self, file)
+        class(continuous), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call self%visit_counts(file)
+        call file%visit(self%y)
+        call file%visit(self%dt)
+        call file%visit(self%implicit)
+        call file%visit(self%stiff)
+        call file%visit(self%calm)
+        call file%visit(self%equations%phase)
+        call file%visit(self%equations%sense)
+        self%known = .false.
+    end subroutine visit
+
+    subroutine why_stopped(self, status, why)
+        class(continuous), intent(in) :: self
+        integer, intent(in) :: status
+        character(len=:), allocatable, intent(out) :: why
+        character(len=10) :: limit
+
+        if (status == friction_no_rate .and. self%system%mass <= 0.0_dp) then
+            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
+                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
+        else if (status == friction_no_rate) then
+            why = 'the contact jumps: friction falls faster than the contact spring unloads. ' &
+                // 'Take a larger alpha_t'
+        else if (status /= friction_no_convergence) then
+            why = trim(friction_message(status))
+        else if (self%dt_min > 0.0_dp) then
+            write (limit, '(es10.3)') self%dt_min
+            why = 'the error exceeds rtol even in steps as short as dt_min = ' &
+                // trim(adjustl(limit))
+        else
+            why = 'the error exceeds rtol even in steps as short as the round-off of the time'
+        end if
+    end subroutine why_stopped
+
+end module continuous_steps

@@ -1,0 +1,400 @@
+!> One block in continuous time: its rate equations, in each phase of its contact, and the
+!> quantities that change their sign where one phase ends (docs/theory.md, section 11).
+module slider_rates
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : law_state, load_rates, onset_drops, onset_gradual, sliding_surface
+    use loading_programme, only : programme
+    implicit none
+    private
+
+    public :: slider_equations
+
+    !> Unknowns. Those of the error norm come first; the others follow from them.
+    integer, parameter, public :: unknowns = 9, controlled = 5
+    integer, parameter, public :: extension = 1    !! of the drive spring [L]
+    integer, parameter, public :: velocity = 2     !! of the block; not without mass [L/T]
+    integer, parameter, public :: elastic = 3      !! elastic displacement of the contact [L]
+    integer, parameter, public :: memory = 4       !! of the law: mu, D, or ln(theta)
+    integer, parameter, public :: ratio = 5        !! R while a shear cap holds the traction [-]
+    integer, parameter, public :: slip = 6         !! accumulated [L]
+    integer, parameter, public :: drive_work = 7   !! [F L]
+    integer, parameter, public :: damped = 8       !! energy [F L]
+    integer, parameter, public :: dissipated = 9   !! energy per area [F/L]
+
+    !> Phases of the contact. A law without a yield point always slides, if only by a little.
+    integer, parameter, public :: phase_open = 0
+    integer, parameter, public :: phase_stick = 1
+    integer, parameter, public :: phase_slide = 2    !! as the law says
+    integer, parameter, public :: phase_capped = 3   !! as the shear cap says
+
+    integer, parameter, public :: switches = 3   !! ways in which a phase can end
+
+    type :: slider_equations
+        type(sliding_surface) :: surface
+        real(dp) :: mass = 0.0_dp, stiffness = 0.0_dp, damping = 0.0_dp   !! as of `slider`
+        real(dp) :: area = 0.0_dp
+        real(dp) :: alpha = 0.0_dp       !! tangential stiffness of the contact [F/L^3]
+        logical :: rigid = .false.       !! the contact has no spring
+        type(programme) :: drive
+        integer :: piece = 0             !! of the programme, in which the rates are taken
+        logical :: steady = .false.      !! drive and normal traction do not change in it
+        real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
+        integer :: phase = phase_stick
+        real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
+    contains
+        procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs
+    end type slider_equations
+
+    !> What a contact does to the block.
+    type :: contact_motion
+        real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
+        real(dp) :: traction = 0.0_dp   !! opposes +x [F/L^2]
+        real(dp) :: elastic = 0.0_dp, memory = 0.0_dp, ratio = 0.0_dp, slip = 0.0_dp   !! rates
+    end type contact_motion
+
+contains
+
+    !> Takes the equations to a piece of the programme.
+    subroutine enter(self, piece)
+        class(slider_equations), intent(inout) :: self
+        integer, intent(in) :: piece
+
+        self%piece = piece
+        self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
+            .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
+    end subroutine enter
+
+    !> Velocity of the drive, pressure and its rate.
+    pure subroutine inputs(self, t, drive_velocity, pressure, pressure_rate)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t                 !! [T]
+        real(dp), intent(out) :: drive_velocity   !! [L/T]
+        real(dp), intent(out) :: pressure         !! [F/L^2]
+        real(dp), intent(out) :: pressure_rate    !! [F/L^2/T]
+        real(dp), parameter :: two_pi = 8.0_dp * atan(1.0_dp)
+
+        associate (d => self%drive, i => self%piece)
+            drive_velocity = d%velocity(i)
+            pressure = d%normal(i)
+            pressure_rate = 0.0_dp
+            if (.not. self%steady) then
+                drive_velocity = d%drive_velocity(t, i)
+                pressure = d%normal_traction(t, i)
+                pressure_rate = d%normal_rate(i)
+                if (d%amplitude > 0.0_dp) pressure_rate = pressure_rate + d%amplitude * two_pi &
+                    * d%frequency * cos(two_pi * d%frequency * t + d%phase)
+            end if
+        end associate
+        if (self%phase == phase_open) then
+            pressure = 0.0_dp
+            pressure_rate = 0.0_dp
+        else
+            pressure = max(pressure, self%least_pressure)
+        end if
+    end subroutine inputs
+
+    !> Rates of the unknowns.
+    pure subroutine rates(self, t, y, dy, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t               !! [T]
+        real(dp), intent(in) :: y(controlled)   !! the others do not matter
+        real(dp), intent(out) :: dy(unknowns)
+        logical, intent(out) :: failed          !! slip has no rate: it jumps
+        type(contact_motion) :: contact
+        real(dp) :: pull, v_drive, pressure, pressure_rate
+
+        call inputs(self, t, v_drive, pressure, pressure_rate)
+        pull = self%stiffness * y(extension)
+        if (self%rigid .and. self%phase /= phase_open) then
+            call rigid_contact(self, y, pull, pressure, contact, failed)
+        else if (self%phase == phase_slide .and. self%surface%traits%onset == onset_drops) then
+            call dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
+        else
+            call elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
+        end if
+        dy(extension) = v_drive - contact%velocity
+        dy(velocity) = 0.0_dp
+        if (self%mass > 0.0_dp .and. .not. (self%rigid .and. self%phase == phase_stick)) then
+            dy(velocity) = (pull - self%damping * contact%velocity - self%area &
+                * contact%traction) / self%mass
+        end if
+        dy(elastic) = contact%elastic
+        dy(memory) = contact%memory
+        dy(ratio) = contact%ratio
+        dy(slip) = contact%slip
+        dy(drive_work) = pull * v_drive
+        dy(damped) = self%damping * contact%velocity**2
+        dy(dissipated) = abs(contact%traction) * contact%slip
+    end subroutine rates
+
+    !> A contact on its spring. Without mass and damper, that and the drive spring are one.
+    pure subroutine elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled), v_drive, pressure, pressure_rate
+        type(contact_motion), intent(out) :: contact
+        logical, intent(out) :: failed
+        type(load_rates) :: load
+        type(law_state) :: state, changes
+        real(dp) :: sense
+        logical :: in_series
+
+        failed = .false.
+        if (self%phase /= phase_open) contact%traction = self%alpha * y(elastic)
+        in_series = .not. (self%mass > 0.0_dp .or. self%damping > 0.0_dp)
+        load%stiffness = self%alpha
+        contact%velocity = y(velocity)
+        if (in_series) then
+            contact%velocity = v_drive
+            load%stiffness = self%alpha * self%stiffness / (self%stiffness + self%area * self%alpha)
+        else if (.not. self%mass > 0.0_dp) then
+            contact%velocity = (self%stiffness * y(extension) - self%area * contact%traction) &
+                / self%damping
+        end if
+        if (self%surface%traits%onset == onset_gradual) then
+            sense = sign(1.0_dp, contact%traction)
+            if (.not. abs(contact%traction) > 0.0_dp) sense = sign(1.0_dp, contact%velocity)
+        else
+            sense = self%sense
+        end if
+        load%traction = abs(contact%traction)
+        load%loading = sense * load%stiffness * contact%velocity
+        load%pressure = pressure
+        load%pressure_rate = pressure_rate
+        load%sliding = self%surface%traits%onset /= onset_gradual
+        state = law_state_of(self, y, pressure)
+        if (self%phase == phase_slide) then
+            call self%surface%law%slip_rate(state, load, contact%slip, failed)
+        else if (self%phase == phase_capped) then
+            contact%slip = load%loading / load%stiffness
+        end if
+        if (self%phase /= phase_open) contact%elastic = contact%velocity - sense * contact%slip
+        if (in_series) then
+            contact%elastic = contact%elastic * (load%stiffness / self%alpha)
+            if (self%phase /= phase_open) contact%velocity = contact%elastic + sense * contact%slip
+        end if
+        if (self%surface%traits%memory == 0) return
+        if (self%surface%traits%memory == 1 .and. self%phase /= phase_capped) then
+            state%r = 0.0_dp   ! R' is not needed, and costs a logarithm or two divisions
+            load%pressure = 0.0_dp
+        end if
+        changes = self%surface%law%state_rates(state, load, contact%slip)
+        call take_memory(self, changes, state, contact)
+    end subroutine elastic_contact
+
+    !> Rates of what the law remembers.
+    pure subroutine take_memory(self, changes, state, contact)
+        class(slider_equations), intent(in) :: self
+        type(law_state), intent(in) :: changes, state
+        type(contact_motion), intent(inout) :: contact
+
+        if (self%surface%traits%memory == 1) then
+            contact%memory = changes%mu
+            if (self%phase == phase_capped) contact%ratio = changes%r
+        else if (self%surface%traits%logarithmic) then
+            contact%memory = changes%r / state%r
+        else
+            contact%memory = changes%r
+        end if
+    end subroutine take_memory
+
+    !> Friction that falls as soon as it slides leaves the spring no rate of its own: the traction
+    !> follows the block's velocity.
+    pure subroutine dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
+        type(contact_motion), intent(out) :: contact
+        logical, intent(out) :: failed
+        real(dp) :: resistance, by_rate, acceleration
+
+        failed = .not. self%mass > 0.0_dp
+        if (failed) return
+        contact%velocity = y(velocity)
+        call self%surface%law%resistance_at(law_state_of(self, y, pressure), max(0.0_dp, &
+            self%sense * y(velocity)), pressure, resistance, by_rate)
+        if (resistance > self%surface%tau_max) then
+            resistance = self%surface%tau_max
+            by_rate = 0.0_dp
+            contact%elastic = 0.0_dp
+        else
+            contact%elastic = self%sense * resistance / pressure * pressure_rate
+        end if
+        contact%traction = self%sense * resistance
+        acceleration = (pull - self%damping * y(velocity) - self%area * contact%traction) &
+            / self%mass
+        contact%elastic = (contact%elastic + by_rate * acceleration) / self%alpha
+        contact%slip = self%sense * (y(velocity) - contact%elastic)
+    end subroutine dropping_contact
+
+    !> A contact without a spring: the block's velocity is the slip rate.
+    pure subroutine rigid_contact(self, y, pull, pressure, contact, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled), pull, pressure
+        type(contact_motion), intent(out) :: contact
+        logical, intent(out) :: failed
+        type(load_rates) :: load
+        type(law_state) :: state
+        real(dp) :: sense, by_rate
+
+        failed = .false.
+        state = law_state_of(self, y, pressure)
+        sense = self%sense
+        if (self%phase == phase_stick) then
+            contact%traction = pull / self%area
+        else
+            contact%velocity = y(velocity)
+            if (self%surface%traits%onset == onset_gradual) sense = sign(1.0_dp, y(velocity))
+            if (.not. self%mass > 0.0_dp) then
+                failed = self%surface%traits%onset /= onset_gradual
+                if (failed) return
+                contact%velocity = creep(self, state, pull, pressure)
+                sense = sign(1.0_dp, contact%velocity)
+            end if
+            contact%slip = sense * contact%velocity
+            call self%surface%law%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
+                contact%traction, by_rate)
+            contact%traction = sense * min(contact%traction, self%surface%tau_max)
+        end if
+        if (self%surface%traits%memory == 0) return
+        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
+            contact)
+    end subroutine rigid_contact
+
+    !> The velocity without inertia, `pull = damping v + area traction(v)`, by Newton's method on
+    !> the traction, from where the damper alone would carry the pull: v is convex in the traction.
+    pure function creep(self, state, pull, pressure) result(v)
+        class(slider_equations), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(dp), intent(in) :: pull, pressure
+        real(dp) :: v   !! [L/T]
+        integer, parameter :: most_iterations = 200
+        type(load_rates) :: load
+        real(dp) :: tau, resistance, by_rate, misfit
+        logical :: jumps
+        integer :: i
+
+        tau = abs(pull) / self%area
+        if (self%damping > 0.0_dp) then
+            call self%surface%law%resistance_at(state, abs(pull) / self%damping, pressure, &
+                resistance, by_rate)
+            tau = min(tau, resistance)
+        end if
+        load = load_rates(tau, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        do i = 1, most_iterations
+            call self%surface%law%slip_rate(state, load, v, jumps)
+            if (.not. self%damping > 0.0_dp) exit
+            call self%surface%law%resistance_at(state, v, pressure, resistance, by_rate)
+            misfit = abs(pull) - self%damping * v - self%area * load%traction
+            load%traction = load%traction + misfit / (self%area + self%damping / by_rate)
+            if (abs(misfit) <= 4.0_dp * epsilon(misfit) * abs(pull)) exit
+        end do
+        v = sign(v, pull)
+    end function creep
+
+    !> What the law knows of the contact.
+    pure function law_state_of(self, y, pressure) result(state)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        type(law_state) :: state
+        real(dp) :: full
+
+        state = law_state(mu=0.0_dp, r=0.0_dp)
+        select case (self%surface%traits%memory)
+        case (1)
+            state%mu = y(memory)
+            if (self%phase == phase_capped) then
+                state%r = y(ratio)
+            else
+                full = y(memory) * pressure
+                if (full > 0.0_dp) state%r = min(1.0_dp, self%alpha * abs(y(elastic)) / full)
+            end if
+        case (2)
+            state%r = y(memory)
+            ! stages of a step that is going to be refused may be anywhere
+            if (self%surface%traits%logarithmic) state%r = exp(min(max(y(memory), -300.0_dp), &
+                300.0_dp))
+        case default   ! nothing
+        end select
+    end function law_state_of
+
+    !> Traction at which a law with a yield point starts to slip, but for its cap.
+    pure function strength(self, y, pressure) result(traction)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp) :: traction               !! [F/L^2]
+        real(dp) :: by_rate
+
+        call self%surface%law%resistance_at(law_state_of(self, y, pressure), 0.0_dp, pressure, &
+            traction, by_rate)
+    end function strength
+
+    !> Traction that the contact carries [F/L^2].
+    pure function traction(self, t, y) result(tau)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: tau
+        type(contact_motion) :: contact
+        real(dp) :: v_drive, pressure, pressure_rate
+        logical :: failed
+
+        tau = 0.0_dp
+        if (self%phase == phase_open) return
+        tau = self%alpha * y(elastic)
+        if (.not. self%rigid) return
+        call inputs(self, t, v_drive, pressure, pressure_rate)
+        call rigid_contact(self, y, self%stiffness * y(extension), pressure, contact, failed)
+        tau = contact%traction
+    end function traction
+
+    !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
+    !> cap and law change places, 3 because the law changes its form.
+    pure function switch_values(self, t, y, dy) result(g)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t              !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: dy(unknowns)   !! rates there
+        real(dp) :: g(switches)
+        type(load_rates) :: load
+        real(dp) :: v_drive, pressure, pressure_rate, own
+        logical :: jumps, gradual, capped
+
+        g = -1.0_dp
+        gradual = self%surface%traits%onset == onset_gradual
+        capped = self%surface%tau_max < huge(own)
+        if (self%phase == phase_open .or. gradual .and. .not. capped) return
+        if (gradual .and. self%rigid) return
+        call inputs(self, t, v_drive, pressure, pressure_rate)
+        associate (cap => self%surface%tau_max)
+            select case (self%phase)
+            case (phase_stick)
+                g(1) = abs(traction(self, t, y)) - min(cap, strength(self, y, pressure))
+            case (phase_slide)
+                if (gradual) then
+                    g(2) = self%alpha * abs(y(elastic)) - cap
+                else
+                    g(1) = -dy(slip)
+                    g(3) = y(memory) - self%surface%traits%kink
+                    if (capped .and. self%surface%traits%onset /= onset_drops) then
+                        g(2) = strength(self, y, pressure) - cap
+                    end if
+                end if
+            case default
+                g(1) = -dy(slip)
+                if (.not. gradual) then
+                    g(2) = cap - strength(self, y, pressure)
+                else if (self%surface%traits%memory == 1) then
+                    g(2) = cap - y(ratio) * y(memory) * pressure
+                else
+                    load = load_rates(cap, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+                    call self%surface%law%slip_rate(law_state_of(self, y, pressure), load, own, &
+                        jumps)
+                    g(2) = own - dy(slip)
+                end if
+            end select
+        end associate
+    end function switch_values
+
+end module slider_rates

@@ -1,0 +1,73 @@
+!> Where an adaptive step ends for other reasons than its error.
+module step_ends
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use loading_programme, only : programme
+    use run_settings, only : next_row
+    implicit none
+    private
+
+    public :: end_of_step, find_opening, next_limit
+
+contains
+
+    !> Where a step from a time ends at the latest: at the next piece, the next row, or the end of
+    !> the run. Of those that are no step apart it is the last.
+    pure function next_limit(drive, every, t_end, shortest, time) result(limit)
+        type(programme), intent(in) :: drive
+        real(dp), intent(in) :: every      !! time between rows, or 0 [T]
+        real(dp), intent(in) :: t_end      !! [T]
+        real(dp), intent(in) :: shortest   !! part of the time that no step is shorter than
+        real(dp), intent(in) :: time       !! [T]
+        real(dp) :: limit                  !! [T]
+        real(dp) :: next
+
+        next = time
+        do
+            limit = next
+            next = min(drive%next_start(limit), next_row(every, limit), t_end)
+            if (limit >= t_end) return
+            if (limit > time .and. next > limit * (1.0_dp + shortest)) return
+        end do
+    end function next_limit
+
+    !> No step is left that is much shorter than the one before the limit.
+    pure function end_of_step(start, dt, limit) result(end)
+        real(dp), intent(in) :: start, dt, limit   !! [T]
+        real(dp) :: end                            !! [T]
+
+        end = start + dt
+        if (end >= limit - 1.0e-3_dp * dt) then
+            end = limit
+        else if (end > limit - dt) then
+            end = start + 0.5_dp * (limit - start)
+        end if
+    end function end_of_step
+
+    !> When the normal traction falls to a threshold within a step, or rises above: the last moment
+    !> before and the first one after; huge if neither happens.
+    pure subroutine find_opening(drive, piece, threshold, open_now, start, end, before, after)
+        type(programme), intent(in) :: drive
+        integer, intent(in) :: piece
+        real(dp), intent(in) :: threshold    !! [F/L^2]
+        logical, intent(in) :: open_now      !! at the start: not above it
+        real(dp), intent(in) :: start, end   !! of the step [T]
+        real(dp), intent(out) :: before, after   !! [T]
+        real(dp) :: middle
+
+        before = huge(before)
+        after = huge(after)
+        if (open_now .eqv. drive%normal_traction(end, piece) <= threshold) return
+        before = start
+        after = end
+        do
+            middle = before + 0.5_dp * (after - before)
+            if (.not. (middle > before .and. middle < after)) return
+            if (open_now .eqv. drive%normal_traction(middle, piece) <= threshold) then
+                before = middle
+            else
+                after = middle
+            end if
+        end do
+    end subroutine find_opening
+
+end module step_ends
