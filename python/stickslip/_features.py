@@ -1,0 +1,166 @@
+"""What of a record the constants are fitted to, and the same of a simulation.
+
+Means over the whole record and counts of events jump when an event enters or leaves; what is compared here moves
+smoothly with the constants: for a record whose events repeat, the times of a fixed number of events one by one, the mean
+cycle around the drop and between drops, and the first loading; for one whose events scatter, medians over the events.
+"""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ._records import Analysis, Falls, find_falls, smooth
+
+MOST_EVENTS = 30        # of a record that are followed one by one
+SKIPPED = 5             # events of a simulation before it has settled
+SETTLED = 4             # events of a simulation that stand for all, where those of the record scatter
+TIMES = 12              # event times that are compared
+NEAR = np.linspace(-1.0, 1.0, 31)
+BETWEEN = np.linspace(0.06, 0.94, 23)
+LOADING_BINS = 25
+FLOOR = 1e-3            # of an amplitude: errors of sampling and of the time integration
+RIG = 0.1               # of the slope of the loading: what is known of stiffness, velocity and units of a scattered record
+
+
+@dataclasses.dataclass(frozen=True)
+class Target:
+    """The features of one record with their standard deviations, and how to take them from a simulation."""
+
+    analysis: Analysis
+    events: int                          #: that a simulation must show
+    names: tuple[str, ...]               #: of the features, one for each value
+    values: np.ndarray
+    noise: np.ndarray                    #: standard deviations of the features, by noise or by scatter
+    scale: np.ndarray                    #: what a relative error of the model is relative to
+    first_load: float                    #: end of the first loading in the record [T]; 0: it has none
+    near: float                          #: half width of the window around a drop [T]
+
+    def errors(self, floor: float = FLOOR) -> np.ndarray:
+        """Standard deviations of the features, with a relative error of the model."""
+        return np.hypot(self.noise, floor * self.scale)
+
+    def of_simulation(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
+        """The features of a simulation; None where it shows too few events."""
+        return self.of_samples(*self.analysis.like(time, force))
+
+    def of_samples(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
+        """The same of samples like the record's."""
+        falls = find_falls(time, smooth(force, self.analysis.window), self.analysis.threshold)
+        if len(falls) < self.events:
+            return None
+        falls = falls.part(slice(None, self.events))
+        if self.analysis.scattered:
+            return medians(time, force, falls.part(slice(SKIPPED, None)))[0]
+        if not self.analysis.from_rest:
+            falls = falls.part(slice(SKIPPED, None))
+        return self._repeating(time, force, falls)
+
+    def _repeating(self, time: np.ndarray, force: np.ndarray, falls: Falls) -> np.ndarray:
+        middle = falls.middle
+        cycles = falls.part(slice(1, None)) if self.analysis.from_rest else falls
+        start = 0.0 if self.analysis.from_rest else middle[0]
+        times = np.interp(_time_places(len(middle), self.analysis.from_rest), np.arange(len(middle)), middle) - start
+        parts = [times, *_mean_cycle(time, force, cycles.middle, self.near)]
+        if self.first_load > 0.0:
+            parts.append(_loading(time, force, self.first_load))
+        return np.concatenate(parts)
+
+
+def _time_places(events: int, from_rest: bool) -> np.ndarray:
+    """Events whose times are compared: all of a few, evenly spread ones of many; the first is the origin or one of them."""
+    first = 0 if from_rest else 1
+    return np.linspace(first, events - 1, min(TIMES, events - first))
+
+
+def _mean_cycle(time: np.ndarray, force: np.ndarray, middle: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
+    """Mean force around a drop, in time, and between drops, in parts of the period."""
+    whole = middle[(middle - near > time[0]) & (middle + near < time[-1])]
+    around = np.interp(whole[:, None] + near * NEAR, time, force).mean(axis=0)
+    between = middle[:-1, None] + np.diff(middle)[:, None] * BETWEEN
+    return around, np.interp(between, time, force).mean(axis=0)
+
+
+def _loading(time: np.ndarray, force: np.ndarray, end: float) -> np.ndarray:
+    """Mean force in equal bins of the first loading."""
+    edges = np.searchsorted(time, np.linspace(0.0, end, LOADING_BINS + 1))
+    total = np.concatenate([[0.0], np.cumsum(force)])
+    return (total[edges[1:]] - total[edges[:-1]]) / np.maximum(1, np.diff(edges))
+
+
+MEDIANS = ('period', 'drop', 'peak', 'slope')
+
+
+def medians(time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[np.ndarray, np.ndarray]:
+    """Medians of `MEDIANS` over the events, and the numbers of each event they are taken of."""
+    gaps = np.diff(falls.middle)
+    # Slope of the loading: from a quarter to three quarters of the way from a trough to the next peak.
+    begin, end = falls.end[:-1], falls.onset[1:]
+    quarter = np.interp(begin + 0.25 * (end - begin), time, force)
+    later = np.interp(begin + 0.75 * (end - begin), time, force)
+    slope = (later - quarter) / np.maximum(0.5 * (end - begin), 1e-300)
+    each = np.column_stack([gaps, (falls.peak - falls.trough)[1:], falls.peak[1:], slope])
+    return np.median(each, axis=0), each
+
+
+def make_target(analysis: Analysis) -> Target:
+    """What of this record is to be fitted."""
+    falls = analysis.falls
+    near = min(0.2 * analysis.period, 3.0 * float(np.median(falls.end - falls.onset)))
+    if analysis.scattered:
+        values, each = medians(analysis.time, analysis.force, falls)
+        errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
+        rig = np.where(np.array(MEDIANS) == 'slope', RIG * np.abs(values), 0.0)
+        return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, rig), np.abs(values), 0.0, near)
+    events = min(len(falls), MOST_EVENTS)
+    first_load = 0.97 * falls.middle[0] if analysis.from_rest else 0.0
+    blank = Target(analysis, events + (0 if analysis.from_rest else SKIPPED), (), np.empty(0), np.empty(0), np.empty(0),
+                   first_load, near)
+    values = blank._repeating(analysis.time, analysis.force, falls.part(slice(None, events)))
+    names, noise, scale = _errors(blank, events, values)
+    return dataclasses.replace(blank, names=names, values=values, noise=noise, scale=scale)
+
+
+def median_of_blocks(each: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Medians of events drawn with replacement in blocks of neighbours, which keeps what events do to the next ones."""
+    n = len(each)
+    block = max(1, round(n ** (1.0 / 3.0)))
+    starts = rng.integers(0, n, size=-(-n // block))
+    chosen = (starts[:, None] + np.arange(block)).ravel()[:n] % n
+    return np.median(each[chosen], axis=0)
+
+
+def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
+    """Names, errors by noise and scales of the features of a record whose events repeat."""
+    noise = target.analysis.noise
+    times = len(_time_places(events, target.analysis.from_rest))
+    around = values[times:times + NEAR.size]
+    amplitude = np.ptp(around)
+    slope = np.abs(np.gradient(around, target.near * NEAR))
+    timing = max(noise / max(slope.max(), 1e-300), 0.1 * target.analysis.step)   # of the middle of one fall
+    level = noise / np.sqrt(events)
+    parts = [('event times', np.full(times, timing), 0.1 * np.abs(values[:times])),
+             ('drop', np.hypot(level, slope * timing / np.sqrt(events)), np.full(NEAR.size, amplitude)),
+             ('cycle', np.full(BETWEEN.size, level), np.full(BETWEEN.size, amplitude))]
+    if target.first_load > 0.0:
+        samples = max(1.0, target.first_load / (LOADING_BINS * target.analysis.step))
+        parts.append(('first loading', np.full(LOADING_BINS, noise / np.sqrt(samples)), np.full(LOADING_BINS, amplitude)))
+    names = tuple(name for name, errors, _ in parts for _ in errors)
+    return names, np.concatenate([errors for _, errors, _ in parts]), np.concatenate([scale for _, _, scale in parts])
+
+
+def outline(falls: Falls, first_load: float, scale: float) -> np.ndarray | None:
+    """A few numbers that change smoothly over the whole range of the constants, in units of a small change of each: for
+    the first, coarse search. Periods and durations count by their logarithms, forces by `scale`."""
+    if len(falls) < 3:
+        return None
+    late = falls.part(slice(1, None))
+
+    def log(value: float) -> float:
+        return float(np.log(max(value, 1e-300)))
+
+    numbers = [log(np.median(np.diff(falls.middle))) / 0.01, np.median(late.peak) / (0.02 * scale),
+               np.median(late.trough) / (0.02 * scale), log(np.median(late.end - late.onset)) / 0.05]
+    if first_load > 0.0:
+        numbers += [log(falls.middle[0]) / 0.04, falls.peak[0] / (0.04 * scale)]
+    return np.array(numbers)

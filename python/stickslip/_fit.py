@@ -1,0 +1,292 @@
+"""Constants of a friction law from measured records of stick-slip (docs/fitting.md)."""
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import hashlib
+import pathlib
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _namelist
+from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians
+from ._records import Analysis, Record, analyse
+from ._run import spring_force
+from ._search import Constant, Journal, Limits, Problem, Simulate, replicas, search, set_times
+
+NORMAL = 1.959964       # standard deviations of a 95 % interval
+UNDETERMINED = 0.2      # standard deviation of a constant's logarithm from which on the records do not determine it
+REPLICAS = 100          # of the records with other noise, or with other events
+RINGING_TIMES = 10.0    # least period without jumps of the response
+
+
+@dataclasses.dataclass(frozen=True)
+class Fit:
+    """What `fit` found."""
+
+    values: dict[str, float]                       #: of the constants
+    intervals: dict[str, tuple[float, float]]      #: 95 % intervals
+    correlation: np.ndarray                        #: of the constants' logarithms, in the order of `values`
+    undetermined: list[str]                        #: constants that the records do not determine
+    misfit: dict[str, dict[str, float]]            #: by record and feature: root mean square, in standard deviations
+    warnings: list[str]
+    evaluations: int                               #: candidates that were simulated
+    model: dict[str, dict[str, Any]]               #: input with the values found, as groups of keys
+    _targets: tuple[Target, ...] = dataclasses.field(repr=False)
+    _problem: Problem = dataclasses.field(repr=False)
+    _candidate: np.ndarray = dataclasses.field(repr=False)
+
+    def __str__(self) -> str:
+        lines = []
+        for name, value in self.values.items():
+            low, high = self.intervals[name]
+            remark = '   not determined by these records' if name in self.undetermined else ''
+            lines.append(f'{name:16s} {value:12.5g}   95 % interval {low:.5g} to {high:.5g}{remark}')
+        for record, features in self.misfit.items():
+            lines.append(f'misfit of {record}: ' + ', '.join(f'{name} {value:.2g}' for name, value in features.items()))
+        return '\n'.join(lines + [f'warning: {warning}' for warning in self.warnings])
+
+    def settings(self, record: int = 0) -> dict[str, dict[str, Any]]:
+        """Input of the program that computes a record with the values found, as groups of keys."""
+        target = self._targets[record]
+        settings = self._problem.settings(self._candidate, target)
+        set_times(settings, float(target.analysis.time[-1]), target.analysis.step)
+        return settings
+
+    def write_namelist(self, path: str | pathlib.Path, record: int = 0) -> None:
+        """Writes an input that `stickslip run` takes as it stands: the model of one of the records."""
+        found = ', '.join(f'{name} {self.values[name]:.5g}' for name in self.values)
+        text = (f'! Fitted to {", ".join(target.analysis.record.name for target in self._targets)}: {found}\n'
+                f'! Drive and end are those of {self._targets[record].analysis.record.name}.\n\n')
+        pathlib.Path(path).write_text(text + _namelist.written(self.settings(record)))
+
+    def predict(self, record: Record) -> dict[str, dict[str, float]]:
+        """Compares a record that need not have been fitted with the model: for the medians over the events of period,
+        drop, peak and slope of the loading the measured one, its error (standard deviation, block bootstrap), the
+        computed one, and its deviation (relative). The record's `settings` say what differs in the model."""
+        return compare(self._problem, self._candidate, analyse(record))
+
+    def plot(self, path: str | pathlib.Path | None = None):
+        """Draws record and model on one axis, cycles laid over one another, and what is left over; a row a record.
+
+        path: where to save the picture, PNG, PDF or SVG by its ending. Gives the matplotlib figure.
+        """
+        from ._fit_picture import draw
+        figure = draw(self)
+        if path is not None:
+            figure.savefig(path)
+        return figure
+
+    def simulate(self, target: Target) -> tuple[np.ndarray, np.ndarray]:
+        """Time and spring force of the model over the length of a record, settled where the record is."""
+        end = max(float(target.analysis.time[-1]), self._problem.expected_end(target, target.events))
+        result = self._problem.run(self._candidate, target, end)
+        if result is None:
+            raise RuntimeError('the run with the values found failed')
+        return result
+
+
+def compare(problem: Problem, candidate: np.ndarray, analysis: Analysis) -> dict[str, dict[str, float]]:
+    """Medians over the events of a record against those of the model."""
+    late = analysis.falls.part(slice(1 if analysis.from_rest else 0, None))
+    measured, each = medians(analysis.time, analysis.force, late)
+    errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
+    settled = dataclasses.replace(analysis, scattered=True)
+    target = dataclasses.replace(make_target(settled), analysis=settled)
+    computed = problem.features(candidate, target)
+    if computed is None:
+        computed = np.full(len(MEDIANS), np.nan)
+    return {name: {'measured': float(measured[k]), 'error': float(errors[k]), 'computed': float(computed[k]),
+                   'deviation': float(computed[k] / measured[k] - 1.0)} for k, name in enumerate(MEDIANS)}
+
+
+def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *, free: Sequence[str],
+        bounds: float | Mapping[str, tuple[float, float]] = 5.0, seed: int = 1, starts: int = 128, jobs: int = 1,
+        progress: bool | Callable[[str], None] | None = None, most_evaluations: int | None = None,
+        most_seconds: float | None = None, checkpoint: str | pathlib.Path | None = None) -> Fit:
+    """Finds constants with which the program's slider gives measured records of stick-slip.
+
+    records: one or several; each may change the input for itself, above all its drive.
+    input: a namelist (name of the file, or its text) or a dict of groups as `run` takes them. Constants that are not
+        free keep its values. With `rtol` in its group ``&time`` the steps are adaptive; else they are fixed, short
+        enough for the slip event, and the subloading law is integrated by ``scheme = 'exact_rate'``.
+    free: names of the constants to find: keys of ``&friction``, or others as 'slider.damping'.
+    bounds: a factor about the values of the input, or lower and upper bounds by name, where the input need not have a
+        value; all above 0.
+    seed: of the starting points; one seed gives one answer, whatever `jobs` is.
+    starts: points of a Sobol sequence within the bounds that are tried first; a power of 2.
+    jobs: simulations that run at the same time.
+    progress: True: lines on standard error; or a function that takes them; None: lines, if that is a terminal.
+    most_evaluations, most_seconds: stop there with the best so far, and a warning.
+    checkpoint: a file that keeps what has been simulated. If it exists, the search goes on from there.
+
+    Raises RecordError where a record cannot be fitted (no sustained stick-slip, too few events, wrong sign, gaps, too
+    much noise), ValueError where bounds or input are wrong; the text says what to do.
+    """
+    records = [records] if isinstance(records, Record) else list(records)
+    if not records:
+        raise ValueError('fit: no records')
+    base = _namelist.groups_of(input)
+    constants = [_constant(name, base, bounds) for name in free]
+    if not constants:
+        raise ValueError('fit: no free constants')
+    targets = tuple(make_target(analyse(record)) for record in records)
+    size = sum(target.values.size for target in targets)
+    if size < len(constants):
+        raise ValueError(f'fit: {len(constants)} free constants, but the records give only {size} numbers, because their '
+                         'events scatter: free fewer, or add records')
+    journal = Journal(checkpoint, _fingerprint(base, constants, targets, seed, starts))
+    with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
+        problem = Problem(base, constants, targets, _SIMULATE, pool, journal,
+                          Limits(most_evaluations, most_seconds, _progress(progress)))
+        try:
+            candidate, stopped = search(problem, seed, starts)
+            problem.limits.most = problem.limits.seconds = None   # the rest is short, and nothing without it
+            return _assess(problem, candidate, stopped)
+        finally:
+            journal.close()
+
+
+_SIMULATE: Simulate = spring_force
+
+
+def _progress(wanted: bool | Callable[[str], None] | None) -> Callable[[str], None] | None:
+    if callable(wanted):
+        return wanted
+    if wanted or (wanted is None and sys.stderr.isatty()):
+        return lambda text: print(f'fit: {text}', file=sys.stderr, flush=True)
+    return None
+
+
+def _constant(name: str, base: dict, bounds: float | Mapping[str, tuple[float, float]]) -> Constant:
+    """A free constant with its bounds."""
+    group, _, key = name.lower().rpartition('.')
+    group = group or 'friction'
+    if isinstance(bounds, Mapping):
+        if name not in bounds:
+            raise ValueError(f'fit: no bounds for {name}')
+        low, high = map(float, bounds[name])
+    else:
+        value = base.get(group, {}).get(key)
+        if not isinstance(value, (int, float)):
+            raise ValueError(f'fit: {name} has no value in the input that bounds could be taken about: give bounds by name')
+        factor = float(bounds)
+        if not factor > 1.0:
+            raise ValueError(f'fit: bounds = {factor:g}: a factor above 1 is needed')
+        low, high = value / factor, value * factor
+    if not 0.0 < low < high < np.inf:
+        raise ValueError(f'fit: bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
+    return Constant(name, group, key, low, high)
+
+
+def _fingerprint(base: dict, constants: Sequence[Constant], targets: Sequence[Target], seed: int, starts: int) -> str:
+    digest = hashlib.sha256(repr((sorted(base.items(), key=str), constants, seed, starts)).encode())
+    for target in targets:
+        digest.update(repr(target.analysis.record.settings).encode())
+        digest.update(target.analysis.force.tobytes())
+    return digest.hexdigest()
+
+
+def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
+    """Errors, correlations and warnings at the candidate that was found."""
+    slope, bent = problem.jacobian(candidate)
+    misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
+    inverse = np.linalg.pinv(slope, rcond=1e-9)
+    found = replicas(problem, candidate, REPLICAS)
+    covariance = np.cov(inverse @ found, ddof=0).reshape(2 * (candidate.size,))
+    covariance += (inverse * _floors(problem.targets)**2) @ inverse.T
+    freedom = misfit.size - candidate.size
+    if freedom > 0:
+        covariance *= max(1.0, float(misfit @ misfit) / freedom)
+    deviation = np.sqrt(np.diag(covariance))
+    # Directions that change nothing have no finite error.
+    blind = np.linalg.norm(slope, axis=0) < 1e-6 * max(np.linalg.norm(slope, axis=0).max(), 1e-300)
+    deviation = np.where(blind, np.inf, deviation)
+    names = [constant.name for constant in problem.constants]
+    values = dict(zip(names, np.exp(candidate).tolist()))
+    with np.errstate(over='ignore', invalid='ignore'):
+        intervals = {name: (float(np.exp(x - NORMAL * s)), float(np.exp(x + NORMAL * s)))
+                     for name, x, s in zip(names, candidate, deviation)}
+        correlation = np.nan_to_num(covariance / np.outer(deviation, deviation))
+    np.fill_diagonal(correlation, 1.0)
+    undetermined = [name for name, s in zip(names, deviation) if not s <= UNDETERMINED]
+    warnings = [warning for target in problem.targets for warning in target.analysis.warnings]
+    warnings += [stopped] if stopped else []
+    warnings += _remarks(problem, candidate, bent, misfit)
+    model = _namelist.merge(problem.base, {})
+    for constant, value in zip(problem.constants, np.exp(candidate)):
+        constant.set(model, value)
+    return Fit(values, intervals, correlation, undetermined, _by_feature(problem.targets, misfit), warnings,
+               problem.limits.count, model, tuple(problem.targets), problem, candidate)
+
+
+def _floors(targets: Sequence[Target]) -> np.ndarray:
+    """Errors that noise and scatter do not show, in the search's standard deviations: of sampling, of the time
+    integration, of the rig. Those of the times of events are not independent of one another, and are left out."""
+    floors = []
+    for target in targets:
+        floor = FLOOR * target.scale
+        floor[np.array(target.names) == 'event times'] = 0.0
+        if target.analysis.scattered:
+            floor[-1] = RIG * abs(target.values[-1])
+        floors.append(floor / target.errors())
+    return np.concatenate(floors)
+
+
+def _by_feature(targets: Sequence[Target], misfit: np.ndarray) -> dict[str, dict[str, float]]:
+    found: dict[str, dict[str, float]] = {}
+    first = 0
+    for target in targets:
+        part = misfit[first:first + target.values.size]
+        first += target.values.size
+        names = np.array(target.names)
+        label = target.analysis.record.name
+        while label in found:
+            label += "'"
+        found[label] = {name: float(np.sqrt(np.mean(part[names == name]**2))) for name in dict.fromkeys(target.names)}
+    return found
+
+
+def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: np.ndarray) -> list[str]:
+    """What a careful reader of the result should know."""
+    remarks = []
+    for constant, x, bend in zip(problem.constants, candidate, bent):
+        if bend > 0.5:
+            remarks.append(f'the response jumps, or bends sharply, within 1 % of {constant.name}: its interval is not to '
+                           'be trusted')
+        if min(x - np.log(constant.low), np.log(constant.high) - x) < 1e-3:
+            remarks.append(f'{constant.name} ends at its bound: widen it, or question the model')
+    first = 0
+    for target in problem.targets:
+        part = misfit[first:first + target.values.size]
+        first += target.values.size
+        name = target.analysis.record.name
+        slider = problem.settings(candidate, target).get('slider', {})
+        remarks += _rig_remarks(target, slider, problem.settings(candidate, target).get('drive', {}))
+        if slider.get('mass', 0.0) > 0.0 and slider.get('stiffness', 0.0) > 0.0:
+            ringing = 2.0 * np.pi * np.sqrt(slider['mass'] / slider['stiffness'])
+            if target.analysis.period < RINGING_TIMES * ringing:
+                remarks.append(f'{name}: the period {target.analysis.period:.3g} is less than {RINGING_TIMES:g} ringing times '
+                               f'({ringing:.3g}): small changes of the constants can move the slider to another cycle')
+        if target.analysis.scattered:
+            remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
+        if np.sqrt(np.mean(part**2)) > 5.0:
+            remarks.append(f'{name}: the model does not follow this record (misfit {np.sqrt(np.mean(part**2)):.2g} standard '
+                           'deviations)')
+    return remarks
+
+
+def _rig_remarks(target: Target, slider: dict, drive: dict) -> list[str]:
+    """Does the force rise in stick as stiffness and velocity say?"""
+    stiffness, velocity = slider.get('stiffness'), drive.get('velocity')
+    if not isinstance(stiffness, (int, float)) or not isinstance(velocity, (int, float)) or len(target.analysis.falls) < 3:
+        return []
+    analysis = target.analysis
+    slope = float(medians(analysis.time, analysis.force, analysis.falls)[0][-1])
+    if slope < 1.03 * stiffness * abs(velocity):
+        return []
+    return [f'{analysis.record.name}: between events the force rises by {slope:.4g} per unit of time, faster than stiffness '
+            f'times velocity, {stiffness * abs(velocity):.4g}: units, stiffness or velocity are not those of the record']

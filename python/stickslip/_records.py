@@ -1,0 +1,330 @@
+"""Measured records of a force against time, and what they show: noise, events, their scatter."""
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+from typing import Any
+
+import numpy as np
+
+
+class RecordError(ValueError):
+    """A record that cannot be fitted; the text says why, where, and what to do."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Record:
+    """A measured force of the drive spring.
+
+    time: when the force was measured, increasing [T]; force: there, positive when the spring pulls the way the drive
+    goes [F]; settings: what of the model's input differs for this record, as groups of keys, for instance
+    ``{'drive': {'velocity': 2.0}, 'slider': {'stiffness': 5.0}}``; name: of messages and pictures; from_rest: does the
+    record begin with a slack spring and a block at rest? None: found out.
+    """
+
+    time: np.ndarray
+    force: np.ndarray
+    settings: dict[str, dict[str, Any]] = dataclasses.field(default_factory=dict)
+    name: str = 'record'
+    from_rest: bool | None = None
+
+    def __post_init__(self) -> None:
+        for name in ('time', 'force'):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), float).ravel())
+        self._check()
+
+    @classmethod
+    def read(cls, path: str | pathlib.Path, *, time: str = 'time', force: str = 'spring_force', time_factor: float = 1.0,
+             force_factor: float = 1.0, force_offset: float = 0.0, start: float | None = None, end: float | None = None,
+             settings: dict[str, dict[str, Any]] | None = None, name: str | None = None,
+             from_rest: bool | None = None) -> Record:
+        """Reads a record from a table (CSV or other separated text with a header), or from a MATLAB file (.mat).
+
+        time, force: names of the columns; time_factor, force_factor: multiply what is read, for other units;
+        force_offset: added to the force afterwards [F]; start, end: the part of the record to take, in its own time
+        [T]; the rest as for `Record`.
+        """
+        path = pathlib.Path(path)
+        columns = _read_columns(path, (time, force))
+        moment = columns[0] * time_factor
+        pull = columns[1] * force_factor + force_offset
+        keep = np.ones(moment.size, bool)
+        if start is not None:
+            keep &= ~(moment < start)
+        if end is not None:
+            keep &= ~(moment > end)
+        return cls(moment[keep], pull[keep], settings or {}, name or path.stem, from_rest)
+
+    def refuse(self, why: str) -> None:
+        """Raises RecordError."""
+        raise RecordError(f'{self.name}: {why}')
+
+    def _check(self) -> None:
+        t, force = self.time, self.force
+        if t.size != force.size:
+            self.refuse(f'{t.size} times, but {force.size} forces')
+        if t.size < 50:
+            self.refuse(f'{t.size} samples are too few; at least 50 are needed')
+        bad = ~(np.isfinite(t) & np.isfinite(force))
+        if bad.any():
+            self.refuse(f'sample {int(np.argmax(bad)) + 1} of {t.size} is not a finite number')
+        step = np.diff(t)
+        if step.min() <= 0.0:
+            i = int(np.argmin(step))
+            self.refuse(f'time does not increase from {t[i]:g} to {t[i + 1]:g} (sample {i + 2})')
+
+
+def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
+    """Columns of a file, by name."""
+    if path.suffix == '.mat':
+        from scipy.io import loadmat
+        table = {key: np.ravel(value) for key, value in loadmat(path).items() if not key.startswith('__')}
+    else:
+        import pandas
+        frame = pandas.read_csv(path, sep=None, engine='python', comment='#', skipinitialspace=True)
+        frame.columns = [str(column).strip() for column in frame.columns]
+        table = frame
+    columns = []
+    for name in names:
+        if name not in table:
+            raise RecordError(f'{path}: no column {name!r}; there are ' + ', '.join(map(str, table)))
+        try:
+            columns.append(np.asarray(table[name], float))
+        except (TypeError, ValueError):
+            raise RecordError(f'{path}: column {name!r} holds what is not a number') from None
+    return columns
+
+
+@dataclasses.dataclass(frozen=True)
+class Falls:
+    """Falls of a force: the slip events of a record or of a model, in their order."""
+
+    onset: np.ndarray     #: time of the peak [T]
+    end: np.ndarray       #: time of the trough [T]
+    middle: np.ndarray    #: time at which half of the fall is over [T]
+    peak: np.ndarray      #: force there [F]
+    trough: np.ndarray    #: force there [F]
+
+    def __len__(self) -> int:
+        return self.onset.size
+
+    def part(self, selection: slice) -> Falls:
+        """Some of them."""
+        return Falls(*(getattr(self, field.name)[selection] for field in dataclasses.fields(self)))
+
+
+def smooth(force: np.ndarray, samples: int) -> np.ndarray:
+    """Moving mean over an odd number of samples; the ends are held."""
+    if samples <= 1:
+        return force
+    half = samples // 2
+    padded = np.concatenate([np.full(half + 1, force[0]), force, np.full(half, force[-1])])
+    total = np.cumsum(padded)
+    return (total[2 * half + 1:] - total[:-2 * half - 1]) / (2 * half + 1)
+
+
+def average(values: np.ndarray, samples: int) -> np.ndarray:
+    """Means of so many samples each; what is left over at the end is dropped."""
+    return values[:values.size // samples * samples].reshape(-1, samples).mean(axis=1)
+
+
+def find_falls(time: np.ndarray, force: np.ndarray, threshold: float) -> Falls:
+    """Falls by more than `threshold` that the force has made up for by as much again, or at the end of the record."""
+    turn = np.flatnonzero(np.diff(np.sign(np.diff(force))) != 0) + 1
+    places = np.concatenate([[0], turn, [force.size - 1]])
+    peaks, troughs = [], []
+    high = low = 0
+    falling = False
+    for i, value in zip(places.tolist(), force[places].tolist()):
+        if falling:
+            if value < force[low]:
+                low = i
+            elif value > force[low] + threshold:
+                peaks.append(high)
+                troughs.append(low)
+                falling, high = False, i
+        elif value > force[high]:
+            high = i
+        elif value < force[high] - threshold:
+            falling, low = True, i
+    if falling and low < force.size - 1:
+        peaks.append(high)
+        troughs.append(low)
+    middle = np.empty(len(peaks))
+    for k, (i, j) in enumerate(zip(peaks, troughs)):
+        level = 0.5 * (force[i] + force[j])
+        below = i + int(np.argmax(force[i:j + 1] < level))
+        part = (force[below - 1] - level) / (force[below - 1] - force[below])
+        middle[k] = time[below - 1] + part * (time[below] - time[below - 1])
+    peaks, troughs = np.array(peaks, int), np.array(troughs, int)
+    return Falls(time[peaks], time[troughs], middle, force[peaks], force[troughs])
+
+
+@dataclasses.dataclass(frozen=True)
+class Analysis:
+    """A record made ready: from time 0, evenly sampled, with its events."""
+
+    record: Record
+    time: np.ndarray       #: from 0 [T]
+    force: np.ndarray      #: without drift [F]
+    averaged: int          #: samples of the record in the mean that each sample is
+    noise: float           #: standard deviation of a sample [F]
+    window: int            #: samples of the moving mean before events are looked for
+    threshold: float       #: least fall of an event [F]
+    falls: Falls
+    from_rest: bool
+    scattered: bool        #: do period or drop vary from event to event by more than a tenth?
+    warnings: tuple[str, ...]
+
+    @property
+    def step(self) -> float:
+        """Time between samples [T]."""
+        return self.time[1] - self.time[0]
+
+    def like(self, time: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Another force against time, sampled and averaged as the record is."""
+        fine = np.arange(0.0, time[-1], self.step / self.averaged)
+        return average(fine, self.averaged), average(np.interp(fine, time, force), self.averaged)
+
+    @property
+    def period(self) -> float:
+        """Median time between events [T]."""
+        return float(np.median(np.diff(self.falls.middle)))
+
+    @property
+    def drop(self) -> float:
+        """Median fall of an event [F]."""
+        return float(np.median(self.falls.peak - self.falls.trough))
+
+
+LEAST_EVENTS = 5
+SAMPLES_A_PERIOD = 200
+SAMPLES_A_FALL = 10
+
+
+def analyse(record: Record) -> Analysis:
+    """Finds the events of a record, or refuses it in words."""
+    time, force, noise = _even(record)
+    if np.median(force) < 0.0 and np.median(force) < -3.0 * noise:
+        record.refuse('the force is negative: it acts against the drive. Turn its sign (force_factor=-1), or the '
+                      "drive's velocity")
+    window, threshold, falls = _events(record, time, force, noise)
+    period = np.median(np.diff(falls.middle))
+    _check_gaps(record, period)
+    warnings = []
+    force, falls, drift = _without_drift(record, time, force, falls)
+    if drift:
+        warnings.append(f'{record.name}: {drift}')
+    fine = min(period / SAMPLES_A_PERIOD, np.median(falls.end - falls.onset) / SAMPLES_A_FALL)
+    coarser = max(1, int(fine / (time[1] - time[0])))
+    if coarser > 1:
+        time, force = average(time, coarser), average(force, coarser)
+        noise /= np.sqrt(coarser)
+        window = max(1, window // coarser // 2 * 2 + 1)
+        falls = find_falls(time, smooth(force, window), threshold)
+    gaps = np.diff(falls.middle)
+    drops = falls.peak - falls.trough
+    # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
+    scattered = max(_spread(gaps) / np.median(gaps), _spread(drops[1:]) / np.median(drops)) > 0.1
+    from_rest = record.from_rest
+    if from_rest is None:
+        from_rest = bool(smooth(force, window)[0] < 0.25 * np.median(falls.peak))
+    return Analysis(record, time, force, coarser, noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings))
+
+
+def _spread(values: np.ndarray) -> float:
+    """Standard deviation of normally distributed values, from their quartiles."""
+    return float(np.subtract(*np.percentile(values, [75, 25])) / 1.349)
+
+
+def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
+    """The record from time 0 on even samples, and its noise."""
+    steps = np.diff(record.time)
+    step = float(np.median(steps))
+    time = record.time - record.time[0]
+    force = record.force
+    if np.abs(steps - step).max() > 1e-3 * step:
+        even = np.arange(0.0, time[-1], step)
+        time, force = even, np.interp(even, time, force)
+    else:
+        time = step * np.arange(time.size)
+    # Second differences see neither the level nor the slope of the force.
+    noise = _spread(np.diff(force, 2)) / np.sqrt(6.0)
+    return time, force, noise
+
+
+def _events(record: Record, time: np.ndarray, force: np.ndarray, noise: float) -> tuple[int, float, Falls]:
+    """Smooths more and more until noise makes no events, but never over more than a part of the period."""
+    late = force[force.size // 4:]
+    range_ = float(np.subtract(*np.percentile(late, [98, 2])))
+    window, count = 1, 0
+    while True:
+        left = noise / np.sqrt(window)   # of the noise, after smoothing
+        threshold = max(0.2 * range_, 8.0 * left)
+        if threshold < 0.5 * range_:
+            falls = find_falls(time, smooth(force, window), threshold)
+            count = max(count, len(falls))
+            if len(falls) >= 2:
+                typical = float(np.median(falls.peak - falls.trough))
+                # Slow changes of the level widen the range: judge by the events themselves.
+                threshold = max(0.3 * typical, 8.0 * left)
+                falls = find_falls(time, smooth(force, window), threshold)
+                if threshold < 0.6 * typical:
+                    break
+        window = 2 * window + 1
+        if window > force.size // 20:
+            _refuse_without_events(record, count, noise, range_)
+    if len(falls) < LEAST_EVENTS:
+        _refuse_without_events(record, len(falls), noise, range_)
+    gaps = np.diff(falls.middle)
+    rest = time[-1] - falls.middle[-1]
+    if rest > 5.0 * np.median(gaps) and rest > 0.25 * time[-1]:
+        record.refuse(f'no sustained stick-slip: the last event ends at {record.time[0] + falls.end[-1]:g}, the record at '
+                      f'{record.time[-1]:g}; take the part with events alone (end)')
+    period = float(np.median(gaps))
+    if window * (time[1] - time[0]) > 0.25 * period:
+        record.refuse(f'the noise ({noise:.3g}) is above what can be smoothed away within a period ({period:.3g}); the '
+                      f'drops are about {typical:.3g}')
+    return window, threshold, falls
+
+
+def _refuse_without_events(record: Record, count: int, noise: float, range_: float) -> None:
+    if range_ > 20.0 * noise:
+        record.refuse(f'no sustained stick-slip, or {count} slip events, which are too few; at least {LEAST_EVENTS} are '
+                      'needed: take a longer record, or another part of it (start, end)')
+    record.refuse('no sustained stick-slip: the noise, or whatever changes from sample to sample, is as large as the falls '
+                  f'of the force (noise {noise:.3g}, range of the force {range_:.3g})')
+
+
+def _check_gaps(record: Record, period: float) -> None:
+    steps = np.diff(record.time)
+    i = int(np.argmax(steps))
+    if steps[i] > max(0.1 * period, 3.0 * np.median(steps)):
+        record.refuse(f'nothing was recorded from {record.time[i]:g} to {record.time[i + 1]:g}, a large part of a period '
+                      f'({period:.3g}); take the part before or after (start, end)')
+
+
+def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[np.ndarray, Falls, str]:
+    """Takes a steady drift of the peaks out, and says so; a drift of more than the force itself is refused."""
+    late = falls.part(slice(1, None))
+    if len(late) < 4:
+        return force, falls, ''
+    slope, _ = np.polyfit(late.onset, late.peak, 1)
+    residual = late.peak - np.polyval(np.polyfit(late.onset, late.peak, 1), late.onset)
+    error = np.std(residual) / (np.std(late.onset) * np.sqrt(len(late)))
+    drift = slope * (late.onset[-1] - late.onset[0])
+    drop = float(np.median(late.peak - late.trough))
+    if abs(drift) < 0.1 * drop or abs(slope) < 5.0 * error or abs(drift) < 2.0 * np.std(residual):
+        return force, falls, ''
+    level = float(np.median(late.peak))
+    if abs(drift) > 0.5 * level:
+        record.refuse(f'the peaks drift by {drift:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
+                      'that changes so much is not what the model describes')
+    middle = 0.5 * (late.onset[0] + late.onset[-1])
+    trend = slope * (np.clip(time, late.onset[0], late.onset[-1]) - middle)
+    if time[0] < late.onset[0]:   # the first loading starts from its own zero
+        trend = np.where(time < late.onset[0], trend * np.clip(time / late.onset[0], 0.0, 1.0), trend)
+    return force - trend, dataclasses.replace(
+        falls, peak=falls.peak - np.interp(falls.onset, time, trend),
+        trough=falls.trough - np.interp(falls.end, time, trend)), (
+        f'the peaks drift by {drift:.3g} over the record, {abs(drift) / drop:.0%} of a drop; a straight line was taken out')

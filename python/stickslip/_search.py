@@ -1,0 +1,391 @@
+"""The search for constants: candidates, their simulations, misfits, least squares. No statistics, no pictures."""
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import json
+import pathlib
+import time as clock
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _namelist
+from ._features import FLOOR, Target, median_of_blocks, medians, outline
+from ._records import find_falls, smooth
+
+Settings = dict[str, dict[str, Any]]
+#: Runs the model on its settings; gives time and spring force, or None where the run fails.
+Simulate = Callable[[Settings], 'tuple[np.ndarray, np.ndarray] | None']
+
+STEP = 0.01             # of a constant, relative, for central differences: smaller ones give error bars too small
+LIMIT = 500.0           # misfits are bent to stay below
+NO_EVENTS = 300.0       # misfit of every feature where a simulation shows too few events
+
+
+@dataclasses.dataclass(frozen=True)
+class Accuracy:
+    """Of a simulation."""
+
+    steps: int    #: fixed ones, in the duration of a slip event
+    rtol: float   #: least of adaptive steps
+
+
+COARSE, FINE = Accuracy(30, 1e-4), Accuracy(100, 0.0)
+
+
+class Stopped(Exception):
+    """A limit that the caller set has been reached."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Constant:
+    """A constant to be found."""
+
+    name: str       #: as the caller gave it
+    group: str      #: of the namelist
+    key: str
+    low: float
+    high: float
+
+    def set(self, settings: Settings, value: float) -> None:
+        """Puts a value into the settings of a run."""
+        settings.setdefault(self.group, {})[self.key] = float(value)
+
+
+@dataclasses.dataclass
+class Problem:
+    """Records, model and free constants. A candidate is the vector of the constants' logarithms."""
+
+    base: Settings
+    constants: Sequence[Constant]
+    targets: Sequence[Target]
+    simulate: Simulate
+    pool: concurrent.futures.Executor
+    journal: Journal
+    limits: Limits
+
+    @property
+    def low(self) -> np.ndarray:
+        return np.log([constant.low for constant in self.constants])
+
+    @property
+    def high(self) -> np.ndarray:
+        return np.log([constant.high for constant in self.constants])
+
+    def settings(self, candidate: np.ndarray, target: Target) -> Settings:
+        """Input of the run of one candidate for one record, without its end."""
+        settings = _namelist.merge(self.base, target.analysis.record.settings)
+        for constant, value in zip(self.constants, np.exp(candidate)):
+            constant.set(settings, value)
+        return settings
+
+    def run(self, candidate: np.ndarray, target: Target, end: float,
+            accuracy: Accuracy = FINE) -> tuple[np.ndarray, np.ndarray] | None:
+        """Simulates up to a time."""
+        self.limits.check()
+        settings = self.settings(candidate, target)
+        set_times(settings, end, target.analysis.step / target.analysis.averaged, accuracy)
+        return self.simulate(settings)
+
+    def expected_end(self, target: Target, events: int) -> float:
+        """Time by which a simulation like the record shows so many events [T]."""
+        falls = target.analysis.falls
+        if target.analysis.from_rest:
+            if events <= len(falls):
+                return 1.02 * falls.middle[events - 1] + 0.5 * target.analysis.period
+            return falls.middle[-1] + (events - len(falls) + 1.5) * target.analysis.period
+        # From a slack spring: as long as the drive needs to load it.
+        load = float(np.median(falls.peak)) * target.analysis.period / target.analysis.drop
+        return 1.2 * load + (events + 1) * 1.1 * target.analysis.period
+
+    def features(self, candidate: np.ndarray, target: Target) -> np.ndarray | None:
+        """Of a simulation that goes on until it shows enough events; None where it does not."""
+        for longer in (1.0, 1.6):
+            result = self.run(candidate, target, longer * self.expected_end(target, target.events))
+            if result is None:
+                return None
+            found = target.of_simulation(*result)
+            if found is not None:
+                return found
+        return None
+
+    def all_features(self, candidate: np.ndarray) -> np.ndarray:
+        """Features of the simulations of all records, one after another; NaN for records without enough events."""
+        found = [self.features(candidate, target) for target in self.targets]
+        return np.concatenate([np.full(target.values.size, np.nan) if values is None else values
+                               for target, values in zip(self.targets, found)])
+
+    def misfit(self, features: np.ndarray, floor: float = FLOOR) -> np.ndarray:
+        """Features of simulations less those of the records, in standard deviations with a relative error of the model:
+        with a large one the search finds its way along narrow valleys, which the times of the events make."""
+        wanted = np.concatenate([target.values for target in self.targets])
+        errors = np.concatenate([target.errors(floor) for target in self.targets])
+        return np.where(np.isnan(features), NO_EVENTS, LIMIT * np.tanh((features - wanted) / errors / LIMIT))
+
+    def coarse_misfit(self, candidate: np.ndarray) -> np.ndarray:
+        """A few robust numbers of a short simulation against those of the records."""
+        parts = []
+        for target in self.targets:
+            analysis = target.analysis
+            scale = float(np.median(analysis.falls.peak))
+            first_load = target.first_load
+            wanted = outline(analysis.falls, first_load, scale)
+            result = self.run(candidate, target, self.expected_end(target, 4), COARSE)
+            found = None
+            if result is not None:
+                time, force = analysis.like(*result)
+                falls = find_falls(time, smooth(force, analysis.window), analysis.threshold)
+                if not analysis.from_rest:
+                    falls = falls.part(slice(min(2, max(0, len(falls) - 3)), None))
+                found = outline(falls, first_load, scale)
+                level = abs(float(force[force.size // 2:].mean()) / float(analysis.force.mean()) - 1.0)
+            if found is None:
+                parts.append(np.full(wanted.size, 100.0 + (50.0 * min(level, 1.0) if result is not None else 100.0)))
+            else:
+                parts.append(found - wanted)
+        return np.concatenate(parts)
+
+    def evaluate(self, kind: str, candidates: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Coarse misfits, or all features, of several candidates; what the journal has is not simulated again."""
+        function = {'coarse': self.coarse_misfit, 'full': self.all_features}[kind]
+        known = [self.journal.get(kind, candidate) for candidate in candidates]
+        missing = [i for i, values in enumerate(known) if values is None]
+        for i, values in zip(missing, self.pool.map(function, [candidates[i] for i in missing])):
+            known[i] = values
+            self.journal.put(kind, candidates[i], values)
+            self.limits.count += 1
+        return known
+
+    def jacobian(self, candidate: np.ndarray, step: float = STEP, floor: float = FLOOR) -> tuple[np.ndarray, np.ndarray]:
+        """Central differences of the misfit, and how far each constant's response is from a straight line (0 to 1)."""
+        steps = step * np.eye(candidate.size)
+        values = [self.misfit(features, floor)
+                  for features in self.evaluate('full', [candidate, *(candidate + steps), *(candidate - steps)])]
+        here, ahead, behind = values[0], np.array(values[1:candidate.size + 1]), np.array(values[candidate.size + 1:])
+        bend = np.linalg.norm(ahead + behind - 2.0 * here, axis=1)
+        straight = np.linalg.norm(ahead - behind, axis=1)
+        return ((ahead - behind) / (2.0 * step)).T, bend / np.maximum(bend + straight, 1e-300)
+
+    def coarse_jacobian(self, candidate: np.ndarray, step: float = 0.02) -> np.ndarray:
+        """Differences of the coarse misfit to one side, towards the middle of the bounds."""
+        steps = np.where(candidate > 0.5 * (self.low + self.high), -step, step)
+        here, *ahead = self.evaluate('coarse', [candidate, *(candidate + np.diag(steps))])
+        return ((np.array(ahead) - here) / steps[:, None]).T
+
+
+def set_times(settings: Settings, end: float, step: float, accuracy: Accuracy = FINE) -> None:
+    """Gives a run its end and rows at the record's samples. Steps are adaptive where the input says so by `rtol`; else
+    fixed and short against the slip event, with the subloading law integrated exactly for a constant slip rate:
+    backward Euler biases the constants."""
+    time, output = settings.setdefault('time', {}), settings.setdefault('output', {})
+    time['t_end'] = float(end)
+    for key in [key for key in output if key not in ('every', 'interval')]:
+        del output[key]
+    if 'rtol' in time:
+        time.pop('dt', None)
+        output.pop('interval', None)
+        time['rtol'] = max(time['rtol'], accuracy.rtol)
+        output['every'] = float(step)
+        return
+    slider = settings.get('slider', {})
+    longest = step
+    if slider.get('mass', 0.0) > 0.0:
+        longest = np.pi * np.sqrt(slider['mass'] / slider['stiffness']) / accuracy.steps
+    parts = max(1, int(np.ceil(step / longest)))
+    time['dt'] = float(step / parts)
+    output['interval'] = parts
+    friction = settings['friction']
+    if friction.get('law', 'subloading') == 'subloading' and friction.get('u_of_r', 'logarithm') == 'logarithm':
+        friction['scheme'] = 'exact_rate'
+
+
+class Limits:
+    """When to stop, and whom to tell how far the search is."""
+
+    def __init__(self, most: int | None, seconds: float | None, progress: Callable[[str], None] | None) -> None:
+        self.most, self.seconds, self.progress = most, seconds, progress
+        self.count = 0
+        self.start = clock.monotonic()
+
+    def check(self) -> None:
+        """Raises Stopped where a limit has been reached."""
+        if self.most is not None and self.count >= self.most:
+            raise Stopped(f'after {self.count} evaluations')
+        if self.seconds is not None and clock.monotonic() - self.start > self.seconds:
+            raise Stopped(f'after {self.seconds:g} seconds')
+
+    def tell(self, text: str) -> None:
+        """Reports progress."""
+        if self.progress is not None:
+            self.progress(text)
+
+
+class Journal:
+    """Misfits that are known already, also in a file, so that an interrupted search can go on. The search is a function
+    of its seed and of them alone: with a journal it does again what it did, without the simulations."""
+
+    def __init__(self, path: str | pathlib.Path | None, problem: str) -> None:
+        self.known: dict[tuple[str, bytes], np.ndarray] = {}
+        self.file = None
+        if path is None:
+            return
+        path = pathlib.Path(path)
+        if path.exists():
+            self._read(path, problem)
+            self.file = path.open('a')
+        else:
+            self.file = path.open('w')
+            self.file.write(json.dumps({'problem': problem}) + '\n')
+            self.file.flush()
+
+    def _read(self, path: pathlib.Path, problem: str) -> None:
+        whole = 0
+        for number, line in enumerate(path.read_bytes().splitlines(keepends=True)):
+            try:
+                entry = json.loads(line)
+            except ValueError:
+                break   # cut short when the search was interrupted
+            if number == 0 and entry.get('problem') != problem:
+                raise ValueError(f'{path}: the checkpoint of another fit (records, input, constants or bounds differ)')
+            if number > 0:
+                self.known[entry['kind'], _key(entry['at'])] = np.array(entry['values'])
+            whole += len(line)
+        with path.open('r+b') as file:
+            file.truncate(whole)
+
+    def get(self, kind: str, candidate: np.ndarray) -> np.ndarray | None:
+        return self.known.get((kind, _key(candidate)))
+
+    def put(self, kind: str, candidate: np.ndarray, misfit: np.ndarray) -> None:
+        self.known[kind, _key(candidate)] = misfit
+        if self.file is not None:
+            self.file.write(json.dumps({'kind': kind, 'at': list(candidate), 'values': list(misfit)}) + '\n')
+            self.file.flush()
+
+    def close(self) -> None:
+        if self.file is not None:
+            self.file.close()
+
+
+def _key(candidate: Sequence[float]) -> bytes:
+    return np.asarray(candidate, float).tobytes()
+
+
+def replicas(problem: Problem, candidate: np.ndarray, number: int) -> np.ndarray:
+    """Deviations of the features, in the search's standard deviations, one column a replica: the model's force with
+    other noise, or, where the events of the record scatter, other events in blocks."""
+    rng = np.random.default_rng(0)
+    blocks = []
+    for target in problem.targets:
+        analysis = target.analysis
+        if analysis.scattered:
+            late = analysis.falls.part(slice(1 if analysis.from_rest else 0, None))
+            middle, each = medians(analysis.time, analysis.force, late)
+            found = np.array([median_of_blocks(each, rng) for _ in range(number)]) - middle
+        else:
+            result = problem.run(candidate, target, problem.expected_end(target, target.events))
+            found = _with_noise(target, *result, rng, number) if result is not None else None
+            if found is None:
+                found = rng.normal(size=(number, target.values.size)) * target.noise
+        blocks.append((found / target.errors()).T)
+    return np.concatenate(blocks)
+
+
+def _with_noise(target: Target, time: np.ndarray, force: np.ndarray, rng: np.random.Generator,
+                number: int) -> np.ndarray | None:
+    time, force = target.analysis.like(time, force)
+    clean = target.of_samples(time, force)
+    if clean is None:
+        return None
+    found = [target.of_samples(time, force + rng.normal(scale=target.analysis.noise, size=force.size))
+             for _ in range(number)]
+    return np.array([clean if features is None else features for features in found]) - clean
+
+
+def search(problem: Problem, seed: int, starts: int) -> tuple[np.ndarray, str]:
+    """The best candidate, and why the search ended early, or ''. Sobol points, then least squares from the best few: on
+    the coarse misfit first, then on all features."""
+    best = Best()
+    try:
+        best.update(_search(problem, seed, starts, best))
+    except Stopped as stop:
+        if best.candidate is None:
+            raise ValueError(f'the search was stopped {stop}, before any candidate showed stick-slip') from None
+        return best.candidate, f'the search was stopped {stop}: the values are the best so far'
+    return best.candidate, ''
+
+
+@dataclasses.dataclass
+class Best:
+    """The best candidate that has been seen."""
+
+    candidate: np.ndarray | None = None
+    cost: float = np.inf
+
+    def update(self, found: tuple[np.ndarray, float]) -> None:
+        if found[1] < self.cost:
+            self.candidate, self.cost = found
+
+
+def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.ndarray, float]:
+    from scipy.stats import qmc
+
+    low, high = problem.low, problem.high
+    limits = problem.limits
+    points = qmc.scale(qmc.Sobol(low.size, seed=seed).random(starts), low, high)
+    costs = []
+    for first in range(0, starts, 16):
+        costs += [float(np.sum(np.minimum(np.abs(values), 100.0)**2))
+                  for values in problem.evaluate('coarse', points[first:first + 16])]
+        limits.tell(f'start {min(first + 16, starts)} of {starts}')
+    coarse = []
+    for k, i in enumerate(np.argsort(costs)[:4]):
+        coarse.append(_least_squares(problem, points[i], lambda at: problem.evaluate('coarse', [at])[0],
+                                     problem.coarse_jacobian, 'soft_l1', 10))
+        limits.tell(f'coarse {k + 1} of 4: misfit {coarse[-1][1]:.3g}')
+    coarse.sort(key=lambda found: found[1])
+    size = sum(target.values.size for target in problem.targets)
+    for k, (candidate, _) in enumerate(coarse):
+        for floor, step, loss in STAGES:
+            candidate, cost = _descend(problem, candidate, floor, step, loss, 8)
+            best.update((candidate, cost))
+            limits.tell(f'fine {k + 1} of at most 4: misfit {cost / size:.3g} a feature')
+        if best.cost < _by_noise_alone(problem, best.candidate):
+            break
+    problem.limits.tell('last steps')
+    return _descend(problem, best.candidate, FLOOR, STEP, 'linear', 15, 1e-6)
+
+
+def _by_noise_alone(problem: Problem, candidate: np.ndarray) -> float:
+    """A misfit that the noise of the records can make where the constants are right, at most."""
+    costs = np.sum(replicas(problem, candidate, 40)**2, axis=0)
+    return float(np.mean(costs) + 2.0 * np.std(costs))
+
+
+def _descend(problem: Problem, start: np.ndarray, floor: float, step: float, loss: str, most: int,
+             tolerance: float = 1e-4) -> tuple[np.ndarray, float]:
+    """Least squares on all features; gives the misfit without what the search allows for."""
+    candidate, _ = _least_squares(
+        problem, start, lambda at: problem.misfit(problem.evaluate('full', [at])[0], floor),
+        lambda at: problem.jacobian(at, step, floor)[0], loss, most, tolerance)
+    misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
+    return candidate, float(misfit @ misfit)
+
+
+#: Relative error of the model, step of the differences, loss.
+STAGES = ((0.03, 0.05, 'soft_l1'), (0.006, 0.02, 'linear'), (FLOOR, STEP, 'linear'))
+
+
+def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.ndarray], np.ndarray],
+                   jacobian: Callable[[np.ndarray], np.ndarray], loss: str, most: int,
+                   tolerance: float = 1e-4) -> tuple[np.ndarray, float]:
+    """Levenberg and Marquardt's method within bounds (scipy's trust regions)."""
+    from scipy.optimize import least_squares
+
+    inside = np.clip(start, problem.low + 1e-6, problem.high - 1e-6)
+    found = least_squares(misfit, inside, jacobian, loss=loss, f_scale=5.0, bounds=(problem.low, problem.high),
+                          max_nfev=most, xtol=tolerance, ftol=tolerance, gtol=1e-10, x_scale=0.1)
+    values = misfit(found.x)
+    return found.x, float(values @ values)
