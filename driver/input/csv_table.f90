@@ -403,8 +403,8 @@ contains
             word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
             if (len(word) == 0) cycle
             words = words + 1
-            yes = scan(word(1:1), '0123456789+-.,') == 0 &
-                .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
+            yes = scan(word(1:1), '0123456789+-.,') == 0 .or. scan(word, '0123456789') == 0
+            yes = yes .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
             if (.not. yes) return
         end do
         yes = words > 0

@@ -504,6 +504,7 @@ contains
 
         text = ''
         nearest = ''
+        if (len(group) > name_length .or. len(key) > name_length) return
         least = max(1, len_trim(key // group) / 3) + 1
         if (len(key) > 0) least = max(1, len(key) / 3) + 1
         do i = 1, self%n_keys

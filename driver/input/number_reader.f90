@@ -2,7 +2,7 @@
 module number_reader
     use, intrinsic :: ieee_arithmetic, only : ieee_get_halting_mode, ieee_overflow, &
         ieee_positive_inf, ieee_quiet_nan, ieee_set_halting_mode, ieee_value
-    use, intrinsic :: iso_c_binding, only : c_char, c_double, c_null_char, c_null_ptr, c_ptr
+    use, intrinsic :: iso_c_binding, only : c_char, c_double, c_intptr_t, c_loc, c_null_char, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
     implicit none
     private
@@ -16,7 +16,7 @@ module number_reader
             import :: c_char, c_double, c_ptr
             implicit none
             character(kind=c_char), intent(in) :: text(*)
-            type(c_ptr), value, intent(in) :: end
+            type(c_ptr), intent(out) :: end
             real(c_double) :: value
         end function c_strtod
     end interface
@@ -114,16 +114,31 @@ contains
         letter = scan(copy, 'dD')
         if (letter > 0) copy(letter:letter) = 'e'
         if (magnitude < 308) then
-            value = c_strtod(copy, c_null_ptr)
+            call to_nearest(copy, value)
         else if (magnitude == 308) then
             call ieee_get_halting_mode(ieee_overflow, halting)
             call ieee_set_halting_mode(ieee_overflow, .false.)
-            value = c_strtod(copy, c_null_ptr)
+            call to_nearest(copy, value)
             call ieee_set_halting_mode(ieee_overflow, halting)
         else
             value = ieee_value(value, ieee_positive_inf)
         end if
     end subroutine convert
+
+    !> In a process that has set a locale with a decimal comma the C library stops at the point:
+    !> Fortran's own reader, which is slower, then has to do.
+    subroutine to_nearest(text, value)
+        character(len=*), target, intent(in) :: text   !! ended by a character 0
+        real(dp), intent(out) :: value
+        type(c_ptr) :: end
+        integer(c_intptr_t) :: taken
+        integer :: status
+
+        value = c_strtod(text, end)
+        taken = transfer(end, taken) - transfer(c_loc(text(1:1)), taken)
+        if (taken == len(text) - 1) return
+        read (text(:len(text) - 1), *, iostat=status) value
+    end subroutine to_nearest
 
     pure subroutine read_name(text, value, is_number)
         character(len=*), intent(in) :: text

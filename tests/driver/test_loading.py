@@ -50,7 +50,7 @@ class Programme(Columns):
                 'Rig 7, operator X\nDate: 2024-01-01\n' + self.PLAIN,
                 '# a\n% b\n\n' + self.PLAIN.replace('\n0.05', '\n# c\n0.05'), '# ' + self.PLAIN, '%' + self.PLAIN.replace(',', ' '),
                 'Time [s],DISPLACEMENT (mm),Normal/MPa\n[s],mm,MPa\n' + self.PLAIN.split('\n', 1)[1],
-                'time,displacement,normal\nTest,Test,Test\ns,mm,\n' + self.PLAIN.split('\n', 1)[1],
+                'time,displacement,normal\nTest,Test,Test\ns,-,mm^2\n' + self.PLAIN.split('\n', 1)[1],
                 'time,displacement,normal,\n12.5,3,10,\n12.55,3.05,10,\n12.6,3.2,20,\n,,,\n,,,\n',
                 'time,displacement,normal\n-1e1,0,1D1\n-9.95,0.05,+10.\n-9.9,.2,20,,\n'):
             run = self.run_columns(self.with_file(content))
