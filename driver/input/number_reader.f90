@@ -138,6 +138,7 @@ contains
         taken = transfer(end, taken) - transfer(c_loc(text(1:1)), taken)
         if (taken == len(text) - 1) return
         read (text(:len(text) - 1), *, iostat=status) value
+        if (status /= 0) value = 0.0_dp
     end subroutine to_nearest
 
     pure subroutine read_name(text, value, is_number)
