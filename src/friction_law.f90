@@ -107,6 +107,7 @@ module friction_law
         procedure(coefficient_interface), deferred :: typical_coefficient
         procedure :: largest_coefficient => typical_is_largest
         procedure :: kinetic_coefficient => typical_is_kinetic
+        procedure :: rate_weakening => no_rate_weakening
         procedure :: healing_rate => never_heals
         procedure :: order => first_order
     end type named_law
@@ -369,6 +370,15 @@ contains
 
         mu = self%typical_coefficient()
     end function typical_is_kinetic
+
+    !> How fast the friction coefficient falls with the slip rate when slip begins; 0 where it does
+    !> not depend on the slip rate then.
+    pure function no_rate_weakening(self) result(slope)
+        class(named_law), intent(in) :: self
+        real(wp) :: slope   !! >= 0 [T/L]
+
+        slope = 0.0_wp
+    end function no_rate_weakening
 
     !> How fast the friction coefficient in the state grows while the surface rests.
     pure function never_heals(self, state) result(rate)

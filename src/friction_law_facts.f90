@@ -36,7 +36,7 @@ module friction_law_facts
     public :: friction_check, friction_coefficient_change, friction_constants, friction_default, &
         friction_facts, friction_healing_rate, friction_internal_variable, friction_law_name, &
         friction_law_number, friction_law_of, friction_place, internal_variable, &
-        constant_table, law_constant, law_facts, rule_text, text_length, word_of
+        broken_rule, constant_table, law_constant, law_facts, rule_text, text_length, word_of
 
     integer, parameter, public :: friction_law_count = law_count
 
@@ -54,6 +54,9 @@ module friction_law_facts
         real(wp) :: kinetic_coefficient = 0.0_wp !! that is left when the surface has slid far,
                                                  !! where it is a constant; else the typical
                                                  !! one [-]
+        real(wp) :: rate_weakening = 0.0_wp      !! how fast the coefficient falls with the slip
+                                                 !! rate when slip begins; 0 where it does not
+                                                 !! depend on it then [T/L]
         real(wp) :: virgin_mu = 0.0_wp           !! statev(5) of a virgin point [-]
         real(wp) :: virgin_internal = 0.0_wp     !! statev(6) of a virgin point
         logical :: needs_time = .false.          !! friction depends on the slip rate: an increment
@@ -270,6 +273,7 @@ contains
         known%typical_coefficient = own%typical_coefficient()
         known%largest_coefficient = own%largest_coefficient()
         known%kinetic_coefficient = own%kinetic_coefficient()
+        known%rate_weakening = own%rate_weakening()
         virgin = own%virgin()
         known%virgin_mu = virgin%mu
         known%virgin_internal = virgin%r

@@ -12,12 +12,12 @@ module friction_mod
     use friction_anisotropy, only : direction_associated, direction_radial, largest_mu_ratio
     use friction_kinds, only : wp
     use friction_law_choice, only : law_coulomb, law_rate_state, law_slip_weakening, &
-        law_static_kinetic, law_subloading
-    use friction_law_facts, only : constant_table, friction_check, friction_coefficient_change, &
-        friction_constants, friction_default, friction_facts, friction_healing_rate, &
-        friction_internal_variable, friction_law_count, friction_law_name, friction_law_number, &
-        friction_law_of, friction_place, internal_variable, law_constant, law_facts, rule_text, &
-        text_length, word_of
+        law_static_kinetic, law_subloading, prop_alpha_n, prop_alpha_t, prop_law
+    use friction_law_facts, only : broken_rule, constant_table, friction_check, &
+        friction_coefficient_change, friction_constants, friction_default, friction_facts, &
+        friction_healing_rate, friction_internal_variable, friction_law_count, friction_law_name, &
+        friction_law_number, friction_law_of, friction_place, internal_variable, law_constant, &
+        law_facts, rule_text, text_length, word_of
     use friction_status, only : friction_bad_axis, friction_bad_increment, friction_bad_law, &
         friction_bad_normal, friction_bad_property, friction_bad_size, friction_bad_state, &
         friction_message, friction_no_convergence, friction_null_pointer, friction_ok, &
@@ -46,7 +46,9 @@ module friction_mod
     public :: friction_check, friction_coefficient_change, friction_constants, friction_default, &
         friction_facts, friction_healing_rate, friction_internal_variable, friction_law_count, &
         friction_law_name, friction_law_number, friction_law_of, friction_place, &
-        constant_table, internal_variable, law_constant, law_facts, rule_text, text_length, word_of
+        broken_rule, constant_table, internal_variable, law_constant, law_facts, rule_text, &
+        text_length, word_of
+    public :: prop_alpha_n, prop_alpha_t, prop_law   ! places in `props` that all laws share
     public :: law_coulomb, law_rate_state, law_slip_weakening, law_static_kinetic, law_subloading
     public :: scheme_backward_euler, scheme_exact_rate
     public :: u_cotangent, u_logarithm, u_reciprocal

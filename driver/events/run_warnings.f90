@@ -2,6 +2,7 @@
 !> model means (docs/driver.md, warnings).
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : prop_alpha_t
     use law_facts, only : rate_weakening
     use run_outcome, only : outcome
     use run_settings, only : settings
@@ -79,10 +80,11 @@ contains
         real(dp) :: critical   ! damping [F T/L]
 
         if (result%energy%dissipated <= 0.0_dp .or. run%rigid_contact) return
-        if (run%drive%largest_normal() * rate_weakening(run%props) <= run%dt * run%props(3)) return
+        if (run%drive%largest_normal() * rate_weakening(run%props) &
+            <= run%dt * run%props(prop_alpha_t)) return
         if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
-        critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(3)))
+        critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(prop_alpha_t)))
         if (run%damping >= least * critical) return
         warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
             &begins, and the contact spring (alpha_t) rings undamped: periods and stress drops &

@@ -4,9 +4,9 @@ module run_reader
     use archive_file, only : mix
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
-    use law_facts, only : is_second_order, is_subloading, kinetic_coefficient, shear_cap, &
-        static_coefficient, typical_coefficient
-    use law_input, only : read_friction
+    use friction_mod, only : facts => law_facts, friction_facts
+    use law_facts, only : has_r
+    use law_input, only : read_friction, refuse_orthotropy
     use loading_programme, only : programme
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
@@ -32,6 +32,7 @@ contains
             end if
         end do
         call read_friction(file, run%props)
+        call refuse_orthotropy(file)
         call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
         call file%get_real('slider', 'damping', run%damping, at_least(0.0_dp), default=0.0_dp)
@@ -102,10 +103,12 @@ contains
     subroutine check_scale(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(in) :: run
+        type(facts) :: law
 
         if (.not. run%adaptive .or. size(file%faults) > 0) return
-        if (typical_coefficient(run%props) * run%drive%largest_normal() <= 0.0_dp) call &
-            file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
+        law = friction_facts(run%props)
+        if (law%typical_coefficient * run%drive%largest_normal() > 0.0_dp) return
+        call file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
     end subroutine check_scale
 
     !> When rows of the time series are due.
@@ -132,11 +135,13 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
         real(dp), parameter :: part = 0.05_dp
+        type(facts) :: law
 
         if (run%chain%n_blocks == 1 .or. run%chain%slip_rate > 0.0_dp) return
         if (size(file%faults) > 0) return
-        run%chain%slip_rate = part * run%area * (typical_coefficient(run%props) &
-            - kinetic_coefficient(run%props)) * run%drive%largest_normal() &
+        law = friction_facts(run%props)
+        run%chain%slip_rate = part * run%area * (law%typical_coefficient &
+            - law%kinetic_coefficient) * run%drive%largest_normal() &
             / sqrt(run%stiffness * run%mass)
         if (run%chain%slip_rate <= 0.0_dp) call file%add_fault(0, &
             '&chain slip_rate: is missing, and has no default where friction does not fall')
@@ -182,20 +187,24 @@ contains
         type(settings), intent(inout) :: run
         character(len=*), parameter :: group = 'initial'
         character(len=:), allocatable :: key
+        type(facts) :: law
 
-        associate (start => run%initial, props => run%props)
-            start%has_r = is_subloading(props)
+        law = friction_facts(run%props)
+        associate (start => run%initial)
+            start%has_r = has_r(run%props)
             call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
             if (start%has_r) then
                 key = 'r'
-                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=props(9))
-                if (start%mu < props(5) .or. start%mu > props(4)) call file%reject(group, 'mu', &
-                    'must be from mu_k to mu_s')
+                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), &
+                    default=law%virgin_mu)
+                if (start%mu < law%kinetic_coefficient .or. start%mu > law%largest_coefficient) then
+                    call file%reject(group, 'mu', 'must be from mu_k to mu_s')
+                end if
             else
                 key = 'mu'
                 call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=0.0_dp)
                 start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
-                if (start%mu > static_coefficient(props)) call file%reject(group, 'mu', &
+                if (start%mu > law%largest_coefficient) call file%reject(group, 'mu', &
                     'must not exceed the static friction coefficient')
                 if (file%given(group, 'r')) call file%reject(group, 'r', &
                     'belongs to the law subloading')
@@ -204,7 +213,7 @@ contains
             if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
                 call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
             end if
-            if (start%r * start%mu * run%drive%normal_traction(0.0_dp, 1) > shear_cap(props)) then
+            if (start%r * start%mu * run%drive%normal_traction(0.0_dp, 1) > law%shear_cap) then
                 call file%reject(group, key, 'makes a friction force above tau_max')
             end if
         end associate
@@ -270,6 +279,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
         character(len=*), parameter :: group = 'time'
+        type(facts) :: law
 
         call file%get_real(group, 'rtol', run%rtol, between(1.0e-12_dp, 0.1_dp))
         call file%get_real(group, 'dt_max', run%dt_max, above(0.0_dp), default=run%t_end)
@@ -277,7 +287,8 @@ contains
         call file%get_real(group, 'dt', run%dt, above(0.0_dp), &
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
-        run%order = merge(2, 1, is_second_order(run%props))
+        law = friction_facts(run%props)
+        run%order = max(1, law%order)
         run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
             file%given(group, 'rho_infinity')])
     end subroutine read_adaptive
@@ -296,7 +307,7 @@ contains
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
             // 'rho_infinity')
         if (.not. allocated(run%props)) return
-        if (is_subloading(run%props)) call file%reject(group, key, &
+        if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')
     end subroutine read_contact
 

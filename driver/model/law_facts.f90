@@ -1,122 +1,94 @@
-!> What the program asks about a friction law, from its constants in the order of `props`
-!> (docs/laws.md).
+!> What the program asks the library about a friction law, from its constants in the order of
+!> `props`.
 module law_facts
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : law_coulomb, law_rate_state, law_slip_weakening, &
-        law_static_kinetic, law_subloading, scheme_exact_rate, statev_mu, statev_r
+    use friction_mod, only : facts => law_facts, friction_coefficient_change, friction_facts, &
+        friction_healing_rate, friction_internal_variable, friction_law_of, library_variable => &
+        internal_variable, statev_mu, statev_r, statev_size
     implicit none
     private
 
-    public :: coefficient_error, healing_rate, is_second_order, is_subloading, &
-        internal_variable, kinetic_coefficient, rate_weakening, shear_cap, static_coefficient, &
-        typical_coefficient
+    public :: coefficient_error, coefficient_range, healing_rate, internal_variable, has_r, &
+        rate_weakening, typical_coefficient
 
 contains
 
-    pure function is_subloading(props) result(yes)
+    !> Has the law a similarity ratio R, which tells how much of the friction is mobilised?
+    pure function has_r(props) result(yes)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
         logical :: yes
+        type(library_variable) :: variable
 
-        yes = nint(props(1)) == law_subloading
-    end function is_subloading
+        variable = friction_internal_variable(friction_law_of(props))
+        yes = variable%exists .and. variable%name == 'R'
+    end function has_r
 
-    !> Is the error of an increment of the third power of its length? Under a shear cap the
-    !> exact-rate scheme books what is dissipated in first order only.
-    pure function is_second_order(props) result(yes)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine, options included
-        logical :: yes
-
-        yes = is_subloading(props) .and. size(props) >= 12
-        if (yes) yes = nint(props(10)) == scheme_exact_rate .and. props(12) <= 0.0_dp
-    end function is_second_order
-
-    !> Growth of the friction coefficient of a contact at rest [1/T].
-    pure function healing_rate(props, mu) result(rate)
+    !> What the law calls its internal variable; R if it has none.
+    pure function internal_variable(props) result(name)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp), intent(in) :: mu         !! friction coefficient [-]
-        real(dp) :: rate
+        character(len=5) :: name
+        type(library_variable) :: variable
 
-        rate = 0.0_dp
-        if (is_subloading(props)) rate = props(7) * (props(4) - mu)
-    end function healing_rate
-
-    !> What errors of the state variables of blocks mean to their friction coefficients later, in
-    !> first order. The coefficient itself may jump, where slip or a shear cap begins to rule it;
-    !> what the law remembers does not.
-    pure function coefficient_error(props, statev, errors) result(error)
-        real(dp), intent(in) :: props(:)                     !! constants of the friction routine
-        real(dp), intent(in) :: statev(:, :), errors(:, :)   !! state variables, one row a block
-        real(dp) :: error(size(errors, 1))                   !! [-]
-
-        select case (nint(props(1)))
-        case (law_coulomb)
-            error = 0.0_dp
-        case (law_rate_state)
-            error = abs(props(5) * errors(:, statev_r) / statev(:, statev_r))
-        case (law_slip_weakening)
-            error = merge((props(4) - props(5)) / props(6) * abs(errors(:, statev_r)), 0.0_dp, &
-                statev(:, statev_r) < props(6))   ! then it stays at mu_k
-        case default
-            error = abs(errors(:, statev_mu))
-        end select
-    end function coefficient_error
+        variable = friction_internal_variable(friction_law_of(props))
+        name = variable%name(:len(name))
+    end function internal_variable
 
     !> The coefficient that stands for the strength of the contact: the static one, or that of
     !> steady sliding at the reference rate.
     pure function typical_coefficient(props) result(mu)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
         real(dp) :: mu                     !! [-]
+        type(facts) :: law
 
-        mu = props(4)
-        if (nint(props(1)) == law_rate_state) mu = max(mu, props(8))
+        law = friction_facts(props)
+        mu = law%typical_coefficient
     end function typical_coefficient
 
-    !> The most that friction can be while the surface rests; infinite where there is no such bound.
-    pure function static_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! of the friction routine
-        real(dp) :: mu                     !! [-]
+    !> Between which coefficients the friction of a law with an R stays: the kinetic and the static
+    !> one.
+    pure function coefficient_range(props) result(bounds)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp) :: bounds(2)              !! [-]
+        type(facts) :: law
 
-        mu = props(4)
-        if (nint(props(1)) == law_rate_state) mu = huge(mu)
-    end function static_coefficient
+        law = friction_facts(props)
+        bounds = [law%kinetic_coefficient, law%largest_coefficient]
+    end function coefficient_range
 
     !> How fast the friction coefficient falls with the slip rate when slip begins [T/L]; 0 under
     !> laws whose friction does not depend on it then.
     pure function rate_weakening(props) result(slope)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
         real(dp) :: slope                  !! >= 0
+        type(facts) :: law
 
-        slope = 0.0_dp
-        if (nint(props(1)) == law_static_kinetic) slope = (props(4) - props(5)) * props(6)
+        law = friction_facts(props)
+        slope = law%rate_weakening
     end function rate_weakening
 
-    !> What the law calls its internal variable; R if it has none.
-    pure function internal_variable(props) result(name)
+    !> Growth of the friction coefficient of a contact at rest [1/T].
+    pure function healing_rate(props, mu) result(rate)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        character(len=5) :: name
+        real(dp), intent(in) :: mu         !! friction coefficient [-]
+        real(dp) :: rate
+        real(dp) :: statev(statev_size)
 
-        name = 'R'
-        if (nint(props(1)) == law_rate_state) name = 'theta'
-        if (nint(props(1)) == law_slip_weakening) name = 'D'
-    end function internal_variable
+        statev = 0.0_dp
+        statev(statev_mu) = mu
+        rate = friction_healing_rate(props, statev)
+    end function healing_rate
 
-    !> The shear cap, huge without one.
-    pure function shear_cap(props) result(tau_max)
-        real(dp), intent(in) :: props(:)   !! as `read_friction` makes them
-        real(dp) :: tau_max                !! [F/L^2]
+    !> What errors of the state variables of blocks mean to their friction coefficients later, in
+    !> first order.
+    pure function coefficient_error(props, statev, errors) result(error)
+        real(dp), intent(in) :: props(:)                     !! constants of the friction routine
+        real(dp), intent(in) :: statev(:, :), errors(:, :)   !! state variables, one row a block
+        real(dp) :: error(size(errors, 1))                   !! [-]
+        type(facts) :: law
 
-        tau_max = props(size(props) - 2)   ! after it mu_ratio and direction
-        if (tau_max <= 0.0_dp) tau_max = huge(tau_max)
-    end function shear_cap
-
-    !> The friction coefficient that is left when the surface has slid far, where that is a constant
-    !> of the law; else the static one.
-    pure function kinetic_coefficient(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! of the friction routine
-        real(dp) :: mu                     !! [-]
-
-        mu = props(5)
-        if (any(nint(props(1)) == [law_coulomb, law_rate_state])) mu = typical_coefficient(props)
-    end function kinetic_coefficient
+        law = friction_facts(props)
+        error = friction_coefficient_change(law%traits, statev(:, statev_r), &
+            errors(:, statev_mu), errors(:, statev_r))
+    end function coefficient_error
 
 end module law_facts

@@ -4,7 +4,8 @@
 module material_point
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
-        friction_snap_back, friction_update, statev_mu, statev_size, statev_u_n
+        friction_snap_back, friction_update, prop_alpha_n, prop_alpha_t, statev_mu, statev_size, &
+        statev_u_n
     implicit none
     private
 
@@ -161,7 +162,8 @@ contains
 
             zero = tolerance * max(maxval(abs(new%traction)), maxval(abs(old%traction)), &
                 maxval(abs(values), mask=by_traction)) &
-                + 4.0_dp * epsilon(zero) * maxval(old%props(2:3)) * maxval(abs(du))
+                + 4.0_dp * epsilon(zero) * maxval(old%props(prop_alpha_n:prop_alpha_t)) &
+                * maxval(abs(du))
         end function allowed
 
     end subroutine find_equilibrium
@@ -173,8 +175,8 @@ contains
         real(dp), intent(in) :: values(:)
         real(dp) :: du(size(values))
 
-        du(2:) = (values(2:) - old%traction(2:)) / old%props(3)
-        du(1) = min(values(1), 0.0_dp) / old%props(2) - old%statev(statev_u_n)
+        du(2:) = (values(2:) - old%traction(2:)) / old%props(prop_alpha_t)
+        du(1) = min(values(1), 0.0_dp) / old%props(prop_alpha_n) - old%statev(statev_u_n)
         if (values(1) >= 0.0_dp) du(1) = max(du(1), 0.0_dp)   ! an open point stays where it is
     end function elastic_answer
 
@@ -217,8 +219,8 @@ contains
         class(contact_point), intent(in) :: self
         real(dp) :: energy
 
-        energy = 0.5_dp * (self%traction(1)**2 / self%props(2) &
-            + sum(self%traction(2:)**2) / self%props(3))
+        energy = 0.5_dp * (self%traction(1)**2 / self%props(prop_alpha_n) &
+            + sum(self%traction(2:)**2) / self%props(prop_alpha_t))
     end function stored
 
     !> Why could the point not be loaded any further?

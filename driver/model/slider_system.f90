@@ -10,8 +10,8 @@ module slider_system
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
-        friction_update_batch, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, &
-        statev_u_n
+        friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
+        statev_r, statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -117,7 +117,7 @@ contains
         if (values%has_r) state%statev(:, statev_r) = values%r
         state%friction = system%area * values%r * values%mu * state%normal
         if (allocated(system%load)) state%friction = state%friction * system%load
-        state%statev(:, statev_u_et) = state%friction / (system%area * system%props(3))
+        state%statev(:, statev_u_et) = state%friction / (system%area * system%props(prop_alpha_t))
         state%spring = sum(state%friction) / size(state%friction) &
             + system%damping * values%velocity
         if (values%spring_given) state%spring = values%spring_force
@@ -245,7 +245,7 @@ contains
         real(dp) :: u_n   ! then, under a load of 1 [L]
         integer :: first, last, part_status
 
-        u_n = -normal / system%props(2)
+        u_n = -normal / system%props(prop_alpha_n)
         status = friction_ok
         if (size(dx) < few) then
             do first = 1, size(dx)
@@ -427,7 +427,7 @@ contains
         end do
         energy%kinetic = 0.5_dp * self%mass * motion
         energy%spring = 0.5_dp * springs / self%stiffness + self%coupling_energy(state%x)
-        energy%contact = 0.5_dp * self%area * self%props(3) * contact
+        energy%contact = 0.5_dp * self%area * self%props(prop_alpha_t) * contact
         energy%dissipated = self%area * dissipated
         energy%drive_work = state%drive_work
         energy%damped = state%damped

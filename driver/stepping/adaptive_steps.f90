@@ -10,7 +10,7 @@ module adaptive_steps
     use chain_parts, only : choose_method
     use friction_mod, only : friction_message, friction_no_convergence, statev_dissipation, &
         statev_mu, statev_r, statev_slip, statev_status
-    use law_facts, only : coefficient_error, is_subloading, typical_coefficient
+    use law_facts, only : coefficient_error, coefficient_range, has_r, typical_coefficient
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
@@ -231,6 +231,7 @@ contains
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
         real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
+        real(dp) :: bounds(2)
 
         associate (finest_end => self%ends(2))
             new%time = finest_end%time
@@ -244,8 +245,9 @@ contains
             end if
             new%statev(:, statev_status) = finest_end%statev(:, statev_status)
             associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
-                if (is_subloading(self%system%props)) then
-                    mu = min(self%system%props(4), max(self%system%props(5), mu))
+                if (has_r(self%system%props)) then
+                    bounds = coefficient_range(self%system%props)
+                    mu = min(bounds(2), max(bounds(1), mu))
                     r = min(1.0_dp, max(0.0_dp, r))
                 else
                     mu = max(0.0_dp, mu)

@@ -9,7 +9,8 @@ module continuous_steps
     use archive_file, only : archive
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        friction_update, law_state, onset_drops, onset_gradual, onset_yields, read_surface, &
+        friction_update, law_state, onset_drops, onset_gradual, onset_yields, prop_alpha_n, &
+        prop_alpha_t, read_surface, &
         statev_dissipation, statev_mu, statev_r, statev_size, statev_slip, statev_status, &
         statev_u_et, statev_u_n
     use law_facts, only : typical_coefficient
@@ -87,7 +88,7 @@ contains
             eq%stiffness = run%stiffness
             eq%damping = run%damping
             eq%area = run%area
-            eq%alpha = run%props(3)
+            eq%alpha = run%props(prop_alpha_t)
             eq%rigid = run%rigid_contact
             eq%drive = run%drive
             eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
@@ -253,7 +254,7 @@ contains
             if (.not. eq%surface%traits%stiff) return
             statev = 0.0_dp
             statev(statev_status) = 1.0_dp
-            statev(statev_u_n) = -pressure / self%system%props(2)
+            statev(statev_u_n) = -pressure / self%system%props(prop_alpha_n)
             statev(statev_u_et) = abs(y(elastic))
             statev(statev_r) = exp(y(memory))
             call friction_update([0.0_dp, 0.0_dp], 16.0_dp * shortest * max(t, self%dt_min), &
@@ -530,7 +531,7 @@ contains
             else if (eq%surface%traits%memory == 2) then
                 statev = 0.0_dp
                 statev(statev_status) = 1.0_dp
-                statev(statev_u_n) = -pressure / self%system%props(2)
+                statev(statev_u_n) = -pressure / self%system%props(prop_alpha_n)
                 statev(statev_u_et) = before
                 statev(statev_r) = self%y(memory)
                 call friction_update([0.0_dp, 1.0e-12_dp * before], 0.0_dp, self%system%props, &
@@ -611,7 +612,7 @@ contains
             new%statev(1, statev_status) = 3.0_dp
             if (eq%phase /= phase_open) new%statev(1, statev_status) = merge(2.0_dp, 1.0_dp, &
                 dy(slip) > 0.0_dp)
-            new%statev(1, statev_u_n) = -new%normal / self%system%props(2)
+            new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
             new%statev(1, statev_u_et) = y(elastic)
             new%statev(1, statev_r) = state%r
             if (eq%surface%traits%memory == 1) then

@@ -3,7 +3,7 @@
 module time_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use abstract_integrator, only : most_shown, step_report
-    use friction_mod, only : friction_no_convergence, friction_ok
+    use friction_mod, only : friction_no_convergence, friction_ok, prop_alpha_t
     use chain_solver, only : chain_matrix
     use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
         friction_forces, slider, slider_state
@@ -186,7 +186,7 @@ contains
         if (report%status < 0) return
         ahead = sign(1.0_dp, self%work%residual(1))
         stride = ahead * self%now%norm / (self%now%inertia + (1.0_dp - self%alpha_f) &
-            * (system%stiffness + system%area * system%props(3)))
+            * (system%stiffness + system%area * system%props(prop_alpha_t)))
         do i = 1, most_doublings
             balanced = self%now%norm <= self%tolerance * self%now%scale
             if (balanced) return

@@ -3,7 +3,7 @@ module friction_host
     use friction_kinds, only : wp
     use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
         friction_snap_back, friction_tangential, friction_update, friction_zero_time_increment, &
-        statev_status, statev_u_et, statev_u_n
+        prop_alpha_n, prop_alpha_t, statev_status, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -156,7 +156,8 @@ contains
         real(wp), intent(in) :: u_et(:)    !! elastic tangential displacement [L]
         real(wp) :: energy                 !! [F/L]
 
-        energy = 0.5_wp * (props(2) * min(u_n, 0.0_wp)**2 + props(3) * sum(u_et**2))
+        energy = 0.5_wp * (props(prop_alpha_n) * min(u_n, 0.0_wp)**2 &
+            + props(prop_alpha_t) * sum(u_et**2))
     end function elastic_energy
 
     !> The factor on the time increment that a status asks for: below 1 where the host should cut.

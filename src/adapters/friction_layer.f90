@@ -11,6 +11,9 @@ module friction_layer
 
     public :: layer_update
 
+    !> Places in the host's list of constants.
+    integer, parameter :: at_thickness = 1, at_modulus = 2, at_friction = 3
+
     !> Where the components of the traction stand in the host's stress.
     type :: layer_components
         integer :: n = 0              !! components of the traction, 2 or 3
@@ -43,20 +46,20 @@ contains
         status = friction_bad_size
         at = components(ndi, nshr)
         n = at%n
-        if (n == 0 .or. size(props) < 3 .or. size(statev) < statev_size) return
+        if (n == 0 .or. size(props) < at_friction .or. size(statev) < statev_size) return
         status = friction_bad_property
-        if (.not. (is_finite(props(1)) .and. is_finite(props(2)))) return
-        thickness = props(1)
-        modulus = props(2)
+        if (.not. (is_finite(props(at_thickness)) .and. is_finite(props(at_modulus)))) return
+        thickness = props(at_thickness)
+        modulus = props(at_modulus)
         if (thickness <= 0.0_wp .or. modulus < 0.0_wp) return
 
-        call host_update(thickness * dstran(at%place(1:n)), dtime, props(3:), statev, &
+        call host_update(thickness * dstran(at%place(1:n)), dtime, props(at_friction:), statev, &
             traction(1:n), tangent(1:n, 1:n), status)
         if (status < 0) return
         call extend_in_plane(at, modulus, dstran, stress, ddsdde, sse)
         stress(at%place(1:n)) = traction(1:n)
         ddsdde(at%place(1:n), at%place(1:n)) = thickness * tangent(1:n, 1:n)
-        sse = sse + elastic_energy(props(3:), statev(statev_u_n), &
+        sse = sse + elastic_energy(props(at_friction:), statev(statev_u_n), &
             statev(statev_u_et:statev_u_et + n - 2)) / thickness
         spd = statev(statev_dissipation) / thickness
     end subroutine layer_update

@@ -26,6 +26,7 @@ module friction_static_kinetic_law
         procedure, nopass :: constants
         procedure :: typical_coefficient
         procedure :: kinetic_coefficient
+        procedure :: rate_weakening
         procedure :: virgin
         procedure :: admits
         procedure :: rest
@@ -90,6 +91,13 @@ contains
 
         mu = self%mu_k
     end function kinetic_coefficient
+
+    pure function rate_weakening(self) result(slope)
+        class(static_kinetic_law), intent(in) :: self
+        real(wp) :: slope
+
+        slope = (self%mu_s - self%mu_k) * self%d_c
+    end function rate_weakening
 
     pure function virgin(self) result(state)
         class(static_kinetic_law), intent(in) :: self
