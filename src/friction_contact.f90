@@ -63,7 +63,7 @@ contains
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old       !! state at the start of the increment
         type(contact_point), intent(out) :: new      !! state at its end
-        real(wp), intent(inout) :: traction(3)   !! transmitted: normal (negative = compression),
+        real(wp), intent(inout) :: traction(3)   !! transmitted, normal (negative = compression),
                                                  !! tangential [F/L^2]
         real(wp), intent(inout) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is
                                                    !! given, column 1 is d/d(pressure)

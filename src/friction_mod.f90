@@ -172,7 +172,7 @@ module friction_mod
         !> zero.
         pure module subroutine friction_rates(velocity, props, statev, rates, status)
             implicit none
-            real(wp), intent(in), contiguous :: velocity(:)   !! relative: normal, tangential 1[,
+            real(wp), intent(in), contiguous :: velocity(:)   !! relative, normal, tangential 1[,
                                                               !! 2]; size 2 or 3, finite [L/T]
             real(wp), intent(in), contiguous :: props(:)   !! material constants, as in
                                                            !! `friction_update`

@@ -307,7 +307,7 @@ contains
         class(law), intent(in) :: surface
         class(unloading), intent(in) :: spring
         type(load), intent(in) :: this
-        type(place), intent(inout) :: there   !! in: x, out: all the rest
+        type(place), intent(inout) :: there   !! x in, all the rest out
 
         call spring%at(there%x, there%spring)
         there%law%slip = there%spring%slip

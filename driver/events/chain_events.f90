@@ -32,13 +32,13 @@ module chain_events
         type(chain_event), allocatable :: events(:)   !! room for `count` and more
         integer :: count = 0
     contains
-        procedure :: look, give_up, visit
-        procedure, private :: over_seam, hand_over
+        procedure :: look, close_all, visit
+        procedure, private :: over_seam, take_ended
     end type chain_finder
 
 contains
 
-    !> Takes in a step; hands over the events that have ended before it, in the order of their
+    !> Takes in a step; returns the events that have ended before it, in the order of their
     !> blocks.
     pure subroutine look(self, old, new, ended)
         class(chain_finder), intent(inout) :: self
@@ -61,18 +61,18 @@ contains
                 high%under_way = low%under_way
             end associate
         end if
-        call self%hand_over(size(new%x), ended)
+        call self%take_ended(size(new%x), ended)
     end subroutine look
 
-    !> Hands over all that is under way.
-    pure subroutine give_up(self, n_blocks, rest)
+    !> Returns all that is under way.
+    pure subroutine close_all(self, n_blocks, rest)
         class(chain_finder), intent(inout) :: self
         integer, intent(in) :: n_blocks
         type(chain_event), allocatable, intent(out) :: rest(:)
 
         self%events(:self%count)%under_way = .false.
-        call self%hand_over(n_blocks, rest)
-    end subroutine give_up
+        call self%take_ended(n_blocks, rest)
+    end subroutine close_all
 
     !> Are the first and the last event one, over the seam of a ring? Once they are they stay so:
     !> events never shrink.
@@ -86,8 +86,8 @@ contains
             .and. self%events(self%count)%last == n_blocks
     end function over_seam
 
-    !> Takes what is not under way out of the list.
-    pure subroutine hand_over(self, n_blocks, ended)
+    !> Takes events that have ended out of the list.
+    pure subroutine take_ended(self, n_blocks, ended)
         class(chain_finder), intent(inout) :: self
         integer, intent(in) :: n_blocks
         type(chain_event), allocatable, intent(out) :: ended(:)
@@ -106,7 +106,7 @@ contains
         ended(1)%last = n_blocks + ended(1)%last
         call absorb(ended(size(ended)), ended(1))
         ended = ended(2:)
-    end subroutine hand_over
+    end subroutine take_ended
 
     !> Adds a block that slips; the blocks of a step come one after the other.
     pure subroutine take_in(self, block, slip, start, end, k)

@@ -49,14 +49,14 @@ contains
         call move_alloc(ended, news%chain_events)
     end subroutine see
 
-    !> Hands over what the end of the run cuts short. An interrupted run goes on.
+    !> Reports what the end of the run cuts short. An interrupted run goes on.
     subroutine finish(self, last, news)
         class(chain_watch), intent(inout) :: self
         type(slider_state), intent(in) :: last
         type(step_news), intent(inout) :: news
 
         if (.not. self%many .or. news%interrupted) return
-        call self%finder%give_up(size(last%x), news%chain_events)
+        call self%finder%close_all(size(last%x), news%chain_events)
         news%cut_short = .true.
         self%cut_short = size(news%chain_events)
     end subroutine finish

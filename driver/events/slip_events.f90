@@ -83,7 +83,7 @@ contains
         self%speed = abs(velocity)
     end subroutine give_sense
 
-    !> Takes in a step, and hands over the events that are known to have ended in it.
+    !> Takes in a step, and returns the events that are known to have ended in it.
     pure subroutine follow(self, old, new, events)
         class(event_finder), intent(inout) :: self
         type(moment), intent(in) :: old, new   !! `new` is the `old` of the next step

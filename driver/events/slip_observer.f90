@@ -117,7 +117,7 @@ contains
             self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive)
     end function seen
 
-    !> Books an event in the piece of the programme that starts at `piece_start`. A recurrence time
+    !> Counts an event in the piece of the programme that starts at `piece_start`. A recurrence time
     !> that began in the piece before says nothing about either.
     pure subroutine add_event(totals, event, piece_start)
         type(event_totals), intent(inout) :: totals

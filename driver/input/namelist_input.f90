@@ -2,7 +2,7 @@
 !> and default.
 !>
 !> A Fortran `read` with a namelist stops at the first fault and says little about it. Here what
-!> nobody asked for is a fault, and so is what breaks its rule. Faults are collected, not thrown.
+!> was not asked for is a fault, and so is what breaks its rule. Faults are collected, not thrown.
 module namelist_input
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
@@ -474,7 +474,7 @@ contains
         if (token%quoted) text = "'" // text // "'"
     end function shown
 
-    !> Notes every group and key that nobody asked for, with the name that may have been meant.
+    !> Notes every group and key that was not asked for, with the name that may have been meant.
     subroutine refuse_unknown(self)
         class(namelist_file), intent(inout) :: self
         integer :: i

@@ -44,7 +44,7 @@ contains
     end subroutine read_number
 
     !> A sign, digits with or without a point, and an exponent with its letter. Fortran itself also
-    !> reads an exponent without a letter, 1-3, which nobody means.
+    !> reads an exponent without a letter, 1-3, which is a typing error.
     pure subroutine take_apart(text, valid, zero, magnitude)
         character(len=*), intent(in) :: text
         logical, intent(out) :: valid

@@ -89,7 +89,7 @@ contains
                 status)
             if (status >= 0) then
                 report%snap_back = report%snap_back .or. status == friction_snap_back
-                call book_work(self, new)
+                call add_work(self, new)
                 self%u = new%u
                 self%traction = new%traction
                 self%tangent = new%tangent
@@ -199,8 +199,8 @@ contains
         if (solved) correction(at) = right
     end subroutine solve
 
-    !> Books the work by the mean traction over the part of the increment in contact.
-    pure subroutine book_work(old, new)
+    !> Adds the work by the mean traction over the part of the increment in contact.
+    pure subroutine add_work(old, new)
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
         real(dp) :: u_old, u_new, share
@@ -212,7 +212,7 @@ contains
         if (u_old < 0.0_dp .and. u_new > 0.0_dp) share = u_old / (u_old - u_new)
         new%work = old%work + share * 0.5_dp * dot_product(old%traction + new%traction, &
             new%u - old%u)
-    end subroutine book_work
+    end subroutine add_work
 
     !> Elastic energy per area [F/L].
     pure function stored(self) result(energy)

@@ -72,7 +72,7 @@ module slider_system
         real(dp) :: at_start = 0.0_dp   !! held at the start, in all forms
         real(dp) :: drive_work = 0.0_dp
         real(dp) :: kinetic = 0.0_dp, spring = 0.0_dp, contact = 0.0_dp   !! held now
-        real(dp) :: damped = 0.0_dp, dissipated = 0.0_dp                  !! gone
+        real(dp) :: damped = 0.0_dp, dissipated = 0.0_dp                  !! lost
     contains
         procedure :: held, unbalanced
     end type energy_balance
@@ -387,7 +387,7 @@ contains
         call move_alloc(from%statev, to%statev)
     end subroutine move_state
 
-    !> Books the work of the drive and what the dampers took from `old` to `new`, by the mean forces
+    !> Adds the work of the drive and the energy lost to the dampers from `old` to `new`, by the mean forces
     !> over the step.
     pure subroutine account(self, old, new)
         class(slider), intent(in) :: self
@@ -407,7 +407,7 @@ contains
     end subroutine account
 
     !> Energies that a state holds: of the motion, of the springs, of the contact; and what has come
-    !> and gone. All in one loop: a sum waits for each addition, four wait together.
+    !> and was lost. All in one loop: a sum waits for each addition, four wait together.
     pure subroutine take_stock(self, state, energy)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: state

@@ -1,6 +1,6 @@
 !> The journal of a sweep: each row as soon as it is finished, so that an interrupted sweep can go
 !> on. It starts with the input that the rows belong to. Only whole lines count: the last one may be
-!> torn.
+!> incomplete.
 module sweep_journal
     use platform, only : rename_file
     use text_file, only : output_file

@@ -13,7 +13,7 @@ module table_size
 
 contains
 
-    !> As far as it is known before the run: of adaptive steps nobody knows how many there will be.
+    !> As far as it is known before the run: the number of adaptive steps is unknown.
     pure function expected_bytes(run) result(bytes)
         type(settings), intent(in) :: run
         real(dp) :: bytes

@@ -10,7 +10,7 @@ module platform
         is_terminal, make_directory, program_beside, remove_file, rename_file, replace_program, &
         seconds, shell_word, truncate_file, watch_for_interrupts
 
-    ! A signal handler can leave its message nowhere else.
+    ! Module variables, because a signal handler has no arguments to leave its message in.
     logical, volatile :: was_interrupted = .false.
     !> Where the program says what it has found.
     integer, protected, public :: report = output_unit
@@ -118,7 +118,7 @@ module platform
 contains
 
     !> Keeps what the program says on standard output until `exit_program`. gfortran's run-time
-    !> library takes output that goes nowhere for success; the C library does not.
+    !> library reports success for output that is lost; the C library does not.
     subroutine hold_output()
         integer :: status
 
@@ -159,7 +159,7 @@ contains
         said = c_fflush(c_null_ptr) == 0 .and. said
     end subroutine say_what_was_held
 
-    !> From now on Ctrl-C and a request to end are noted, not obeyed at once.
+    !> From now on Ctrl-C and a request to end are noted; the run ends after its step.
     subroutine watch_for_interrupts()
         type(c_funptr) :: before
 

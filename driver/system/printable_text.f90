@@ -7,7 +7,7 @@ module printable_text
 
 contains
 
-    !> Cut where it is long; characters that nobody sees are shown as their codes.
+    !> Cut where it is long; invisible characters are shown as their codes.
     pure function printable(text) result(shown)
         character(len=*), intent(in) :: text
         character(len=:), allocatable :: shown

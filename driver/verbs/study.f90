@@ -142,7 +142,7 @@ contains
         type(settings) :: tighter
         type(outcome) :: reference
         type(simulation_run) :: live
-        type(observer_slot) :: nobody(0)
+        type(observer_slot) :: no_observers(0)
 
         tighter = run
         if (run%adaptive) then
@@ -151,7 +151,7 @@ contains
             tighter%dt = 0.5_dp * run%dt
         end if
         call start_run(tighter, live)
-        call simulate(live, nobody, reference)
+        call simulate(live, no_observers, reference)
         if (len(reference%failure) > 0) then
             write (error_unit, '(2a)') 'stickslip: the tighter run failed ', reference%failure
         else

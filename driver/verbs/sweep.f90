@@ -179,11 +179,11 @@ contains
         type(settings), intent(in) :: run
         character(len=:), allocatable :: text
         type(simulation_run) :: live
-        type(observer_slot) :: nobody(0)
+        type(observer_slot) :: no_observers(0)
         type(outcome) :: result
 
         call start_run(run, live)
-        call simulate(live, nobody, result)
+        call simulate(live, no_observers, result)
         text = result_text(run, result)
     end function run_one
 
