@@ -387,8 +387,8 @@ contains
         call move_alloc(from%statev, to%statev)
     end subroutine move_state
 
-    !> Adds the work of the drive and the energy lost to the dampers from `old` to `new`, by the mean forces
-    !> over the step.
+    !> Adds the work of the drive and the energy lost to the dampers from `old` to `new`, by the
+    !> mean forces over the step.
     pure subroutine account(self, old, new)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: old
