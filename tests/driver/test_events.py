@@ -139,7 +139,7 @@ class Pieces(Program):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         return [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_pieces.csv')]
 
-    def friction_by_runge_kutta(self, drive, stiffness, step=2e-3):
+    def friction_by_runge_kutta(self, drive, stiffness, step=1e-2):
         """Peak, least and last friction in each piece: friction law and spring as two ordinary differential equations."""
         k = 1 / (1 / stiffness + 1 / self.SPRINGS)
 
