@@ -8,6 +8,8 @@
 module fault_explicit
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use fault_problem, only : fault, fault_state
+    use fault_start, only : start_rate_state
+    use fault_stepper, only : stepper
     use friction_mod, only : friction_slip_rates
     use processes, only : team
     implicit none
@@ -33,7 +35,7 @@ module fault_explicit
         -1.0_dp / 40.0_dp]
     integer, parameter :: block = 512   !! cells whose stages stay in cache
 
-    type :: explicit_steps
+    type, extends(stepper) :: explicit_steps
         private
         real(dp), allocatable :: slip_rate(:, :), memory_rate(:, :)   !! cell, stage
         real(dp), allocatable :: slip(:), memory(:)                   !! of a stage
@@ -41,15 +43,56 @@ module fault_explicit
         integer, allocatable :: status(:)
         integer :: first_stage = 1, last_stage = stages    !! places of the rates: they swap
     contains
-        procedure :: start
+        procedure :: start => start_explicit
+        procedure :: begin
         procedure :: step
+        procedure :: columns
+        procedure :: keep
+        procedure :: take
         procedure, private :: rates, to_stage, error_of
     end type explicit_steps
 
 contains
 
-    !> Makes ready to go on from a state, and completes its slip rates and tractions.
-    subroutine start(self, here, together, state, sound)
+    subroutine start_explicit(self, here, together, state, problem)
+        class(explicit_steps), intent(inout) :: self
+        type(fault), intent(inout) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(inout) :: state
+        character(len=:), allocatable, intent(out) :: problem
+
+        problem = ''
+        call start_rate_state(here, together, state)
+    end subroutine start_explicit
+
+    pure function columns(self) result(n)
+        class(explicit_steps), intent(in) :: self
+        integer :: n
+
+        n = 2
+    end function columns
+
+    subroutine keep(self, state, columns, number)
+        class(explicit_steps), intent(inout) :: self
+        type(fault_state), intent(inout) :: state
+        real(dp), intent(inout) :: columns(:, :), number
+
+        columns(:, 1) = state%slip
+        columns(:, 2) = state%memory
+        number = 0.0_dp
+    end subroutine keep
+
+    subroutine take(self, state, columns, number)
+        class(explicit_steps), intent(inout) :: self
+        type(fault_state), intent(inout) :: state
+        real(dp), intent(inout) :: columns(:, :), number
+
+        state%slip = columns(:, 1)
+        state%memory = columns(:, 2)
+    end subroutine take
+
+    !> Completes slip rates and tractions.
+    subroutine begin(self, here, together, state, sound)
         class(explicit_steps), intent(inout) :: self
         type(fault), intent(inout) :: here
         type(team), intent(in) :: together
@@ -69,7 +112,7 @@ contains
         if (state%dt > 0.0_dp) return
         state%dt = 1.0e-2_dp / together%largest(max(maxval(abs(state%rate) / here%slip_scale), &
             maxval(abs(self%memory_rate(:, 1))), tiny(1.0_dp)))
-    end subroutine start
+    end subroutine begin
 
     !> One step of `state%dt` or less, not beyond the end of the run. Not sound: no step is short
     !> enough.

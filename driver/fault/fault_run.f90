@@ -4,10 +4,11 @@ module fault_run
     use fault_checkpoint, only : read_checkpoint, write_checkpoint
     use fault_events, only : event_watch
     use fault_explicit, only : explicit_steps
+    use fault_implicit, only : implicit_steps
     use fault_problem, only : fault, fault_state
     use fault_recorder, only : recorder
     use fault_settings, only : fault_plan
-    use fault_start, only : start_rate_state
+    use fault_stepper, only : stepper
     use platform, only : interrupted, remove_file, report, seconds
     use processes, only : team
     use progress_bar, only : progress
@@ -23,7 +24,7 @@ module fault_run
     type :: live_run
         type(fault) :: here
         type(fault_state) :: state
-        type(explicit_steps) :: stepper
+        class(stepper), allocatable :: steps
         type(event_watch) :: watch
         type(recorder) :: records
         character(len=:), allocatable :: base    !! of the files' names, with the directory
@@ -47,13 +48,18 @@ contains
         begun = seconds()
         call live%here%create(plan, together)
         call live%records%prepare(live%here, together, base)
-        call start_rate_state(live%here, together, live%state)
+        if (plan%explicit) then
+            allocate (explicit_steps :: live%steps)
+        else
+            allocate (implicit_steps :: live%steps)
+        end if
+        call live%steps%start(live%here, together, live%state, problem)
+        if (len(problem) > 0) return
         call live%watch%start(live%here, together, live%state)
-        problem = ''
         if (resume) call take_checkpoint(live, together, problem)
         if (len(problem) > 0) return
         if (together%rank == 0) call warn(live%here)
-        call live%stepper%start(live%here, together, live%state, sound)
+        call live%steps%begin(live%here, together, live%state, sound)
         if (.not. sound) then
             problem = 'no slip rate is found for the state at the start'
             return
@@ -93,7 +99,7 @@ contains
                 records%time_before = state%time
                 records%slip_before = state%slip
                 records%rate_before = state%rate
-                call live%stepper%step(live%here, together, state, sound)
+                call live%steps%step(live%here, together, state, sound)
                 if (.not. sound) then
                     problem = 'at time ' // text_of(state%time) // ': no step is short enough'
                     exit
@@ -130,6 +136,8 @@ contains
         type(team), intent(in) :: together
         character(len=:), allocatable, intent(inout) :: problem
         real(dp) :: header(own_numbers + size(live%records%sizes()))
+        real(dp), allocatable :: columns(:, :)
+        integer :: n
         logical :: done
 
         call live%records%flush_all()
@@ -143,11 +151,15 @@ contains
                 merge(1.0_dp, 0.0_dp, watch%on), real(watch%events, dp), watch%largest_rate, &
                 event%onset, event%peak_rate, real(event%first_cell, dp), &
                 live%records%next_contour, state%error, 0.0_dp]
+            n = live%steps%columns()
+            allocate (columns(live%here%n, n + 2))
+            call live%steps%keep(state, columns(:, :n), header(13))
+            columns(:, n + 1) = watch%slip_before
+            columns(:, n + 2) = watch%took_part
             header(own_numbers + 1:) = live%records%sizes()
             call together%share(header)   ! lengths of files are the first process's
             call write_checkpoint(live%base // '.checkpoint', together, live%here%part, &
-                live%here%plan%fingerprint, header, reshape([state%slip, state%memory, &
-                watch%slip_before, watch%took_part], [live%here%n, 4]), done)
+                live%here%plan%fingerprint, header, columns, done)
         end associate
         if (.not. done) problem = 'cannot write ' // live%base // '.checkpoint (disk full?)'
     end subroutine leave_checkpoint
@@ -156,7 +168,9 @@ contains
         type(live_run), intent(inout) :: live
         type(team), intent(in) :: together
         character(len=:), allocatable, intent(inout) :: problem
-        real(dp) :: header(own_numbers + size(live%records%sizes())), columns(live%here%n, 4)
+        real(dp) :: header(own_numbers + size(live%records%sizes())), &
+            columns(live%here%n, live%steps%columns() + 2)
+        integer :: n
         logical :: failed
 
         call read_checkpoint(live%base // '.checkpoint', together, live%here%part, &
@@ -175,10 +189,10 @@ contains
             event%first_cell = int(header(10), int64)
             live%records%next_contour = header(11)
             state%error = header(12)
-            state%slip = columns(:, 1)
-            state%memory = columns(:, 2)
-            watch%slip_before = columns(:, 3)
-            watch%took_part = columns(:, 4)
+            n = live%steps%columns()
+            call live%steps%take(state, columns(:, :n), header(13))
+            watch%slip_before = columns(:, n + 1)
+            watch%took_part = columns(:, n + 2)
         end associate
         call live%records%go_on(header(own_numbers + 1:))
         failed = together%any_of(live%records%failed())

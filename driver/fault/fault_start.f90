@@ -2,12 +2,14 @@
 module fault_start
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use fault_problem, only : fault, fault_state
-    use friction_mod, only : law_state, load_rates, read_surface, sliding_surface
+    use friction_mod, only : friction_facts, friction_law_of, friction_message, friction_update, &
+        law_facts, law_state, law_subloading, load_rates, read_surface, sliding_surface, &
+        statev_mu, statev_r, statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
     use processes, only : team
     implicit none
     private
 
-    public :: start_rate_state
+    public :: start_contacts, start_rate_state
 
 contains
 
@@ -51,6 +53,112 @@ contains
                 - here%damping * state%rate(cell), here%pressure(cell), state%rate(cell))
         end do
     end subroutine start_rate_state
+
+    !> The contacts of all cells, for implicit steps, whatever the law: under rate-and-state
+    !> friction as above; else under the traction of the plan, with the memory of a virgin surface,
+    !> or in steady sliding.
+    subroutine start_contacts(here, together, state, statev, problem)
+        type(fault), intent(inout) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(inout) :: state
+        real(dp), intent(out) :: statev(:, :)                   !! cell, place
+        character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
+        real(dp) :: given(1), contact(statev_size)
+        integer :: i, k, cell, status
+
+        problem = ''
+        status = 0
+        if (here%plan%rate_state) call start_rate_state(here, together, state)
+        if (.not. allocated(state%slip)) then
+            allocate (state%slip(here%n), state%memory(here%n), state%traction(here%n))
+            state%slip = 0.0_dp
+            state%rate = spread(here%plan%plate_rate, 1, here%n)
+        end if
+        cell = 0
+        do k = here%part%first, here%part%first + here%part%rows - 1
+            do i = 1, here%plan%nx
+                cell = cell + 1
+                if (here%plan%rate_state) then
+                    state%traction(cell) = here%prestress(cell) - here%damping * state%rate(cell)
+                    call load_contact(here%props(cell, :), here%pressure(cell), &
+                        state%traction(cell), exp(state%memory(cell)), contact, status)
+                else if (here%plan%steady) then
+                    call slide_to_steady_state(here%props(cell, :), here%pressure(cell), &
+                        here%plan%plate_rate, contact, state%traction(cell), status)
+                else
+                    given = here%plan%initial%at(here%plan%x_of(i), here%plan%z_of(k))
+                    state%traction(cell) = given(1)
+                    state%rate(cell) = 0.0_dp
+                    call load_contact(here%props(cell, :), here%pressure(cell), given(1), -1.0_dp, &
+                        contact, status)
+                end if
+                if (status < 0) exit
+                statev(cell, :) = contact
+                state%memory(cell) = contact(statev_r)
+            end do
+            if (status < 0) exit
+        end do
+        if (status < 0) problem = 'the state at the start is refused: ' // friction_message(status)
+        if (together%any_of(status < 0)) then
+            if (len(problem) == 0) problem = 'the state at the start is refused'
+            return
+        end if
+        here%prestress = state%traction + here%damping * state%rate
+    end subroutine start_contacts
+
+    !> A contact that carries a traction elastically.
+    subroutine load_contact(props, pressure, traction, internal, statev, status)
+        real(dp), intent(in) :: props(:), pressure, traction
+        real(dp), intent(in) :: internal   !! variable of the law; < 0: that of a virgin surface
+        real(dp), intent(out) :: statev(statev_size)
+        integer, intent(out) :: status
+        type(law_facts) :: facts
+        real(dp) :: tried(statev_size), t(2), tangent(2, 2)
+
+        facts = friction_facts(props)
+        statev = 0.0_dp
+        statev(statev_status) = 1.0_dp
+        statev(statev_u_n) = -pressure / facts%alpha_n
+        statev(statev_u_et) = traction / facts%alpha_t
+        statev(statev_mu) = facts%virgin_mu
+        statev(statev_r) = facts%virgin_internal
+        if (internal > 0.0_dp) statev(statev_r) = internal
+        if (friction_law_of(props) == law_subloading) statev(statev_r) = traction &
+            / (facts%virgin_mu * pressure)
+        tried = statev
+        t = 0.0_dp
+        tangent = 0.0_dp
+        call friction_update([0.0_dp, 0.0_dp], 1.0e-30_dp, props, tried, t, tangent, status)
+    end subroutine load_contact
+
+    !> A contact that has slid at a rate until its traction changes no more.
+    subroutine slide_to_steady_state(props, pressure, rate, statev, traction, status)
+        real(dp), intent(in) :: props(:), pressure, rate
+        real(dp), intent(out) :: statev(statev_size), traction
+        integer, intent(out) :: status
+        real(dp), parameter :: growth = 1.3_dp, tolerance = 1.0e-13_dp
+        integer, parameter :: most = 400
+        type(law_facts) :: facts
+        real(dp) :: t(2), tangent(2, 2), du, before
+        integer :: i
+
+        facts = friction_facts(props)
+        statev = 0.0_dp
+        t = 0.0_dp
+        tangent = 0.0_dp
+        call friction_update([-pressure / facts%alpha_n, 0.0_dp], 0.0_dp, props, statev, t, &
+            tangent, status)
+        du = 1.0e-3_dp * pressure / facts%alpha_t
+        do i = 1, most
+            if (status < 0) return
+            before = t(2)
+            call friction_update([0.0_dp, du], du / rate, props, statev, t, tangent, status)
+            if (i > 40 .and. abs(t(2) - before) <= tolerance * pressure) exit
+            du = growth * du
+        end do
+        traction = t(2)
+        statev(statev_slip:) = 0.0_dp
+    end subroutine slide_to_steady_state
 
     !> ln(slip rate) of a cell under a traction, without damping.
     function ln_rate(surface, traction, pressure, ln_theta) result(ln_v)

@@ -317,11 +317,16 @@ contains
             end if
         else
             call file%require(group, 'initial_file')
-            call read_map(file, group, 'initial_file', ['traction ', 'slip_rate'], plan%initial, &
-                sound)
+            if (plan%rate_state) then
+                call read_map(file, group, 'initial_file', ['traction ', 'slip_rate'], &
+                    plan%initial, sound)
+            else
+                call read_map(file, group, 'initial_file', ['traction'], plan%initial, sound)
+            end if
             if (.not. sound) return
             if (any(plan%initial%values(1, :, :) < 0.0_dp)) call file%reject(group, &
                 'initial_file', 'its column traction must be >= 0')
+            if (.not. plan%rate_state) return
             if (any(plan%initial%values(2, :, :) <= 0.0_dp)) call file%reject(group, &
                 'initial_file', 'its column slip_rate must be > 0')
         end if

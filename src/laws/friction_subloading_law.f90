@@ -455,7 +455,7 @@ contains
         type(law_traits) :: traits
 
         traits = law_traits(onset=onset_gradual, memory=1, weight=1.0_wp, &
-            slip_scale=1.0_wp / max(self%kappa, self%m), &
+            slip_scale=1.0_wp / merge(self%kappa, self%m, self%kappa > 0.0_wp), &
             weakening=self%kappa * (self%mu_s - self%mu_k))
     end function traits
 

@@ -25,7 +25,7 @@ SMALL = """
 &time t_end = 1.0e10, rtol = 1e-4 /
 &output stations = 0, 10e3, checkpoint = 0, slip_contours = 3e8, 10 /
 """
-LONG = SMALL.replace('nz = 64', 'nz = 128').replace('d_c = 0.032', 'd_c = 0.012')
+LONG = SMALL.replace('nz = 64', 'nz = 100').replace('d_c = 0.032', 'd_c = 0.015').replace('1.0e10', '7.0e9')
 PLANE = """
 &fault geometry = 'whole', length = 60e3, width = 40e3, nx = 30, nz = 21, shear_modulus = 32.04e9,
        wave_speed = 3464, plate_rate = 1e-9, normal_traction = 50e6, initial = 'file', initial_file = 'start.csv' /
@@ -33,6 +33,14 @@ PLANE = """
 &time t_end = 3e8, rtol = 1e-3 /
 &output stations = 20e3, stations_x = 5e3, checkpoint = 0 /
 """
+SUBLOADING = """
+&fault geometry = 'antiplane_half', width = 40e3, nz = 96, shear_modulus = 32.04e9, wave_speed = 3464,
+       plate_rate = 1e-9, normal_traction = 50e6, initial = 'file', initial_file = 'a.csv' /
+&friction law = 'subloading', mu_s = 0.6, mu_k = '@a.csv', kappa = 10, xi = 1e-9, m = 1000, scheme = 'exact_rate' /
+&time t_end = 1.5e10, rtol = 2e-3 /
+&output stations = 0, 10e3, checkpoint = 0 /
+"""
+A = 'z,a,mu_k,traction\n0,0.010,0.51,22.5e6\n15e3,0.010,0.51,22.5e6\n18e3,0.025,0.60,22.5e6\n'
 START = 'x,z,traction,slip_rate\n' + ''.join(
     f'{x},{z},{32e6 if (x, z) == (0, 20e3) else 30e6},{1e-9}\n'
     for z in (0, 10e3, 20e3, 30e3, 40e3) for x in (-30e3, -10e3, 0, 10e3, 30e3))
@@ -44,7 +52,7 @@ class FaultTest(unittest.TestCase):
             self.skipTest('built without FFTW')
         self.place = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.place)
-        (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,0.010\n18e3,0.025\n')
+        (self.place / 'a.csv').write_text(A)
         (self.place / 'start.csv').write_text(START)
 
     def write(self, text, name='case.nml'):
@@ -112,12 +120,12 @@ class Processes(FaultTest):
             self.skipTest('built without MPI')
 
     def test_files_do_not_depend_on_the_number_of_processes(self):
-        for text in (SMALL, PLANE):
+        for text, counts in ((SMALL, (2, 3)), (PLANE, (2, 3)), (SUBLOADING.replace('1.5e10', '1e9'), (2,))):
             name = self.write(text)
-            for processes in (1, 2, 3):
+            self.run_fault(name, '--output', 'on1', '--quiet')
+            for processes in counts:
                 self.run_fault(name, '--output', f'on{processes}', '--quiet', processes=processes)
-            self.assert_same_files('on1', 'on2')
-            self.assert_same_files('on1', 'on3')
+                self.assert_same_files('on1', f'on{processes}')
 
     def test_killed_and_resumed_on_another_number_of_processes(self):
         name = self.write(LONG)
@@ -152,13 +160,50 @@ class Restart(FaultTest):
         run.communicate()
         (self.place / 'a.csv').write_text('z,a\n0,0.011\n15e3,0.010\n18e3,0.025\n')
         self.assertIn('not the one that wrote', self.run_fault(name, '--resume', expect=1).stderr)
-        (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,0.010\n18e3,0.025\n')
+        (self.place / 'a.csv').write_text(A)
         damaged = bytearray(checkpoint.read_bytes())
         damaged[len(damaged) // 2] ^= 4
         checkpoint.write_bytes(damaged)
         self.assertIn('damaged', self.run_fault(name, '--resume', expect=1).stderr)
         checkpoint.unlink()
         self.assertIn('no checkpoint', self.run_fault(name, '--resume', expect=1).stderr)
+
+
+class Laws(FaultTest):
+    def test_subloading_friction_gives_earthquakes(self):
+        """The first one after 454 years, as an independent trial code has it with other steps (docs/fault.md)."""
+        name = self.write(SUBLOADING)
+        self.run_fault(name, '--output', 'whole', '--quiet', '--no-plot')
+        events = self.events('whole', 'case')
+        self.assertEqual(len(events), 1)
+        self.assertAlmostEqual(float(events[0]['onset']) / YEAR, 454, delta=4)
+        self.assertGreater(float(events[0]['peak_slip_rate']), 0.1)
+        self.kill_and_resume(name, 0.5, 1, 1)
+
+    def test_implicit_steps_agree_with_explicit_ones(self):
+        text = SMALL.replace('1.0e10', '3e9').replace('rtol = 1e-4', "rtol = 1e-3, scheme = 'implicit'")
+        self.run_fault(self.write(text, 'implicit.nml'), '--quiet')
+        self.run_fault(self.write(text.replace("'implicit'", "'explicit'"), 'explicit.nml'), '--quiet')
+        last = {}
+        for stem in ('implicit', 'explicit'):
+            with open(self.place / f'{stem}_out' / f'{stem}_station_1.csv', newline='') as file:
+                last[stem] = list(csv.DictReader(file))[-1]
+        self.assertAlmostEqual(float(last['implicit']['slip']), float(last['explicit']['slip']), delta=0.01)
+        self.assertAlmostEqual(float(last['implicit']['traction']) / 50e6, float(last['explicit']['traction']) / 50e6,
+                               delta=1e-3)
+
+    def test_constant_friction_slides_at_the_plate_rate(self):
+        text = SMALL.replace("law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6",
+                             "law = 'coulomb', mu = 0.6")
+        self.run_fault(self.write(text), '--quiet')
+        with open(self.place / 'case_out' / 'case_station_2.csv', newline='') as file:
+            last = list(csv.DictReader(file))[-1]
+        self.assertAlmostEqual(float(last['slip']), 1e-9 * 1.0e10, delta=1e-6)
+        self.assertAlmostEqual(float(last['traction']), 30e6, delta=1)
+
+    def test_a_start_beyond_the_strength_is_refused(self):
+        (self.place / 'a.csv').write_text(A.replace('22.5e6', '40e6'))
+        self.assertIn('state at the start is refused', self.run_fault(self.write(SUBLOADING), expect=1).stderr)
 
 
 class Input(FaultTest):
