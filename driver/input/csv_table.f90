@@ -9,7 +9,9 @@
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use fault_list, only : append_fault, fault
     use number_reader, only : read_number
+    use number_text, only : whole_text
     use printable_text, only : lower, printable
     use whole_file, only : plain_text, read_whole_file
     implicit none
@@ -36,7 +38,7 @@ module csv_table
         type(line_text), allocatable :: names(:)              !! of the columns, as asked for
         real(dp), allocatable :: values(:, :)                 !! column, row
         integer, allocatable :: lines(:)                      !! of the file, one a row
-        type(line_text), allocatable :: faults(:)             !! each with its line
+        type(fault), allocatable :: faults(:)                 !! each with its line
         integer :: header_line = 0                            !! with the names of the columns
     contains
         procedure :: column, add_fault
@@ -442,7 +444,7 @@ contains
             why = 'is smaller than any number here but 0'
         else if (mark > 0 .and. mark /= form%mark .and. len(why) == 0) then
             why = 'has a decimal ' // merge('point', 'comma', mark == 1) // ', and line ' &
-                // whole(form%mark_line) // ' has another mark'
+                // whole_text(form%mark_line) // ' has another mark'
         end if
         if (len(why) == 0) return
         value = 0.0_dp
@@ -581,22 +583,15 @@ contains
         class(table), intent(inout) :: self
         integer, intent(in) :: line
         character(len=*), intent(in) :: text
-        type(line_text) :: new
 
         if (size(self%faults) > most_faults) return
-        new%text = text
-        if (line > 0) new%text = 'line ' // whole(line) // ': ' // text
-        if (size(self%faults) == most_faults) new%text = 'and more faults'
-        self%faults = [self%faults, new]
+        if (size(self%faults) == most_faults) then
+            call append_fault(self%faults, 0, 'and more faults')
+        else if (line > 0) then
+            call append_fault(self%faults, line, 'line ' // whole_text(line) // ': ' // text)
+        else
+            call append_fault(self%faults, 0, text)
+        end if
     end subroutine add_fault
-
-    pure function whole(number) result(text)
-        integer, intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=12) :: buffer
-
-        write (buffer, '(i0)') number
-        text = trim(buffer)
-    end function whole
 
 end module csv_table

@@ -6,16 +6,18 @@
 module namelist_input
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use namelist_parser, only : fault, group_seen, namelist_entry, parse_namelists, parsed_text, &
+    use fault_list, only : append_fault, fault
+    use namelist_parser, only : group_seen, namelist_entry, parse_namelists, parsed_text, &
         value_token
     use namelist_rules, only : above, any_number, at_least, between, not_zero, rule
     use number_reader, only : read_number
+    use number_text, only : whole_text
     use printable_text, only : lower, printable
     use whole_file, only : plain_text, read_whole_file
     implicit none
     private
 
-    public :: above, any_number, at_least, between, fault, lower, namelist_file, not_zero, &
+    public :: above, any_number, at_least, between, lower, namelist_file, not_zero, &
         read_namelist_file, read_namelist_text, rule
 
     integer, parameter :: name_length = 64
@@ -161,7 +163,7 @@ contains
         end if
         call self%get_reals(group, key, values, allowed)
         if (size(values) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole(size(values)))
+            call self%reject(group, key, 'takes one value, not ' // whole_text(size(values)))
         end if
         if (size(values) > 0) value = values(1)
     end subroutine get_real
@@ -187,7 +189,7 @@ contains
             refused = refused + 1
             if (refused <= most_of_a_list) call self%reject(group, key, why, token=tokens(i))
         end do
-        if (refused > most_of_a_list) call self%reject(group, key, whole(refused &
+        if (refused > most_of_a_list) call self%reject(group, key, whole_text(refused &
             - most_of_a_list) // ' more of its values are refused')
         if (.not. sound) values = [real(dp) ::]
     end subroutine get_reals
@@ -263,7 +265,7 @@ contains
         value = default
         call self%get_choices(group, key, places, choices)
         if (size(places) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole(size(places)))
+            call self%reject(group, key, 'takes one value, not ' // whole_text(size(places)))
         else if (size(places) == 1) then
             value = trim(choices(places(1)))
         end if
@@ -310,7 +312,7 @@ contains
         call gather(self, group, key, tokens)
         if (size(tokens) == 0) return
         if (size(tokens) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
+            call self%reject(group, key, 'takes one value, not ' // whole_text(size(tokens)))
         else if (.not. tokens(1)%quoted .or. len_trim(tokens(1)%text) == 0) then
             call self%reject(group, key, 'must be text in quotes', token=tokens(1))
         else
@@ -335,7 +337,7 @@ contains
         if (size(tokens) == 0) return
         value = any(yes == lower(tokens(1)%text))
         if (size(tokens) > 1 .or. has_subscript(self, group, key)) then
-            call self%reject(group, key, 'takes one value, not ' // whole(size(tokens)))
+            call self%reject(group, key, 'takes one value, not ' // whole_text(size(tokens)))
         else if (tokens(1)%quoted .or. .not. (value .or. any(no == lower(tokens(1)%text)))) then
             call self%reject(group, key, 'must be .true. or .false.', token=tokens(1))
         end if
@@ -583,12 +585,12 @@ contains
         do i = 1, min(size(order), most_shown)
             associate (this => self%faults(order(i)))
                 text = text // self%name
-                if (this%line > 0) text = text // ':' // whole(this%line)
+                if (this%line > 0) text = text // ':' // whole_text(this%line)
                 text = text // ': ' // this%text // new_line('a')
             end associate
         end do
         if (size(order) > most_shown) text = text // self%name // ': and ' &
-            // whole(size(order) - most_shown) // ' faults more' // new_line('a')
+            // whole_text(size(order) - most_shown) // ' faults more' // new_line('a')
     end function describe_faults
 
     !> Gives a key one value in place of all that it has: the i-th value of another key. A key or a
@@ -681,8 +683,8 @@ contains
         do i = 1, size(self%entries)
             associate (entry => self%entries(i))
                 text = text // '&' // entry%group // ' ' // entry%key
-                if (entry%subscripted) text = text // '(' // whole(entry%first) // '::' &
-                    // whole(entry%stride) // ')'
+                if (entry%subscripted) text = text // '(' // whole_text(entry%first) // '::' &
+                    // whole_text(entry%stride) // ')'
                 text = text // ' ='
                 do j = 1, size(entry%values)
                     text = text // ' ' // quoted(entry%values(j))
@@ -697,12 +699,8 @@ contains
         class(namelist_file), intent(inout) :: self
         integer, intent(in) :: line
         character(len=*), intent(in) :: text
-        type(fault) :: new
 
-        new%line = line
-        new%text = text
-        new%hidden = self%broken
-        self%faults = [self%faults, new]
+        call append_fault(self%faults, line, text, hidden=self%broken)
     end subroutine add_fault
 
     ! ---- small things ------------------------------------------------------------------------
@@ -724,14 +722,5 @@ contains
             if (choices(place) == text) return
         end do
     end function place_in
-
-    pure function whole(number) result(text)
-        integer, intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=12) :: buffer
-
-        write (buffer, '(i0)') number
-        text = trim(buffer)
-    end function whole
 
 end module namelist_input

@@ -5,11 +5,12 @@
 !> commas in a row), text in quotes over several lines, text after the `/` of a group, which
 !> that reader skips.
 module namelist_parser
+    use fault_list, only : append_fault, fault
     use printable_text, only : lower, printable
     implicit none
     private
 
-    public :: fault, group_seen, namelist_entry, parse_namelists, parsed_text, value_token
+    public :: group_seen, namelist_entry, parse_namelists, parsed_text, value_token
 
     integer, parameter, public :: most_values = 1000000   !! of a key
     integer, parameter :: most_faults = 40                !! then the rest is not read
@@ -36,12 +37,6 @@ module namelist_parser
         integer :: line = 0
         logical :: known = .false.         !! some part of the program asked for it
     end type group_seen
-
-    type :: fault
-        integer :: line = 0                     !! 0: of the file as a whole
-        character(len=:), allocatable :: text
-        logical :: hidden = .false.             !! follows from another fault
-    end type fault
 
     type :: parsed_text
         type(namelist_entry), allocatable :: entries(:)
@@ -585,11 +580,8 @@ contains
         type(parsed_text), intent(inout) :: parsed
         integer, intent(in) :: line
         character(len=*), intent(in) :: text
-        type(fault) :: new
 
-        new%line = line
-        new%text = text
-        parsed%faults = [parsed%faults, new]
+        call append_fault(parsed%faults, line, text)
     end subroutine add_fault
 
 end module namelist_parser

@@ -2,7 +2,8 @@
 !> values.
 module sweep_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use namelist_input, only : any_number, fault, lower, namelist_file
+    use fault_list, only : fault
+    use namelist_input, only : any_number, lower, namelist_file
     use run_reader, only : read_settings
     use sweep_settings, only : sweep_axis, sweep_plan
     implicit none

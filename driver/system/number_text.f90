@@ -4,7 +4,7 @@ module number_text
     implicit none
     private
 
-    public :: full_row, quoted_field, short_text
+    public :: full_row, quoted_field, short_text, whole_text
 
 contains
 
@@ -27,6 +27,15 @@ contains
         end do
         line = packed(:n)
     end function full_row
+
+    pure function whole_text(number) result(text)
+        integer, intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=12) :: buffer
+
+        write (buffer, '(i0)') number
+        text = trim(buffer)
+    end function whole_text
 
     !> A number with as many digits as it takes to read the same bits back, and no more.
     pure function short_text(number) result(text)
