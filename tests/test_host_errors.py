@@ -10,7 +10,7 @@ import unittest
 
 CALL = """
 import ctypes, sys
-path, host, dtime, *numbers = sys.argv[1:]
+path, host, material, dtime, *numbers = sys.argv[1:]
 props = [float(number) for number in numbers]
 if host == 'calculix':
     props = [0.1, 1.0, *props]
@@ -19,8 +19,8 @@ real, whole = (lambda x: ctypes.byref(ctypes.c_double(x))), (lambda k: ctypes.by
 unset, zero = (None if host == 'kratos' else real(0.0)), Full()
 time = (ctypes.c_double * 2)()
 shear = Six(0.0, 0.0, -0.01, 0.0, 0.01, 0.0)
-name = ctypes.create_string_buffer(b'@ABAQUS_STICKSLIP'.ljust(80))
-step = (ctypes.c_int * 4)(1, 1, 1, 1)
+name = ctypes.create_string_buffer(material.encode().ljust(80))
+step = (ctypes.c_int * 4)(1, 1, 0, 0)
 ctypes.CDLL(path).umat_(
     Six(), State(), Full(), real(0.0), real(0.0), real(0.0), unset, unset and zero, unset and zero, unset, Six(), shear,
     time, real(float(dtime)), unset, unset, unset, unset, name, whole(3), whole(3), whole(6), whole(8),
@@ -34,9 +34,9 @@ RATE_AND_STATE = (4, 1000, 800, 0.01, 0.015, 1e-3, 1.0, 0.4)
 
 
 class Errors(unittest.TestCase):
-    def call(self, host, props, dtime=0.1):
+    def call(self, host, props, dtime=0.1, material='@ABAQUS_STICKSLIP'):
         library = os.environ['STICKSLIP_' + host.upper()]
-        return subprocess.run([sys.executable, '-c', CALL, library, host, str(dtime), *map(str, props)], text=True,
+        return subprocess.run([sys.executable, '-c', CALL, library, host, material, str(dtime), *map(str, props)], text=True,
                               capture_output=True, check=False)
 
     def test_valid_input_is_solved(self):
@@ -50,6 +50,11 @@ class Errors(unittest.TestCase):
             result = self.call('calculix', props, dtime)
             self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
             self.assertRegex(result.stdout, rf'\*ERROR in umat: stickslip, UMAT, code {code}: .*, element 7, point 5')
+
+    def test_calculix_hears_that_its_other_interface_is_not_served(self):
+        result = self.call('calculix', RATE_AND_STATE, material='@ABAQUSNL_STICKSLIP')
+        self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
+        self.assertRegex(result.stdout, r'\*ERROR in umat: .*@ABAQUSNL_STICKSLIP .*write @ABAQUS_STICKSLIP.*, element 7')
 
     def test_kratos_hears_the_cause_and_stops(self):
         for code, props, dtime in ((-2, (77, *RATE_AND_STATE[1:]), 0.1), (-3, (2, 1000, 800, -0.4), 0.1),

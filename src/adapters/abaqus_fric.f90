@@ -3,10 +3,10 @@
 !>     *FRICTION, USER, DEPVAR=8, PROPERTIES=9, UNSYMM   with the constants of `friction_update`
 !>
 !> Abaqus leaves the routine out while the contact is open, so mu does not recover then.
-subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev, dgam, taulm, &
-    press, dpress, ddpddh, slip, kstep, kinc, time, dtime, noel, ciname, slname, msname, npt, &
-    node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, chrlngth, &
-    props, nprops)
+subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev, &
+    dgam, taulm, press, dpress, ddpddh, slip, kstep, kinc, time, dtime, noel, ciname, slname, &
+    msname, npt, node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, &
+    chrlngth, props, nprops)
     use friction_host, only : cut_factor, elastic_energy, error_text, forget_elastic, &
         host_tangential, rotate_tangential, stdb_abqerr
     use friction_kinds, only : wp
@@ -33,7 +33,7 @@ subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev
     integer, intent(in) :: kstep, kinc, noel, npt, node, npatch
     character(len=80), intent(in) :: ciname, slname, msname
     integer, parameter :: was_open = 2, relative_motion = 0
-    real(wp) :: state(statev_size), start(statev_size)
+    real(wp) :: state(statev_size), start(statev_size), second
     integer :: status, last
 
     if (lm == was_open) return
@@ -55,8 +55,10 @@ subroutine fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev
 
     last = statev_u_et + nfdir - 1
     dslip = dgam - (state(statev_u_et:last) - start(statev_u_et:last))
-    sed = elastic_energy(props, 0.0_wp, state(statev_u_et:last))
+    second = 0.0_wp
+    if (nfdir == 2) second = state(last)
+    sed = elastic_energy(props, 0.0_wp, state(statev_u_et), second)
     sfd = state(statev_dissipation) - start(statev_dissipation)
     ddtddt = 0.0_wp
     statev(1:statev_size) = state
-end subroutine fric
+end subroutine stickslip_fric

@@ -4,13 +4,14 @@
 !> `friction_update`
 !>
 !> Abaqus counts compression and penetration positive: the first component changes its sign.
-subroutine uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, ddfddr, statev, sed, sfd, &
-    spd, svd, scd, pnewdt, rdisp, drdisp, temp, dtemp, predef, dpred, time, dtime, freqr, ciname, &
-    slname, msname, props, coords, alocaldir, drot, area, chrlngth, node, ndir, nstatv, npred, &
-    nprops, mcrd, kstep, kinc, kit, linper, lopenclose, lstate, lsdi, lprint)
+subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, ddfddr, &
+    statev, sed, sfd, spd, svd, scd, pnewdt, rdisp, drdisp, temp, dtemp, predef, dpred, time, &
+    dtime, freqr, ciname, slname, msname, props, coords, alocaldir, drot, area, chrlngth, node, &
+    ndir, nstatv, npred, nprops, mcrd, kstep, kinc, kit, linper, lopenclose, lstate, lsdi, &
+    lprint)
     use friction_contact, only : point_open
-    use friction_host, only : cut_factor, elastic_energy, error_text, interface_update, &
-        rotate_tangential, stdb_abqerr
+    use friction_host, only : cut_factor, elastic_energy, error_text, host_update, &
+        interface_update, rotate_tangential, stdb_abqerr
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
         statev_size, statev_status, statev_u_et, statev_u_n
@@ -37,15 +38,20 @@ subroutine uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, ddfddr, sta
     integer, intent(inout) :: lstate              !! out: status of the friction routine's point
     integer, intent(inout) :: lsdi                !! out: 1 if the point has opened or closed
     character(len=80), intent(in) :: ciname, slname, msname
-    real(wp) :: state(statev_size), dissipated
+    integer, parameter :: perturbation = 1
+    real(wp) :: state(statev_size), dissipated, second
     integer :: status, now
 
+    if (linper == perturbation) then
+        call base_stiffness()
+        return
+    end if
     status = friction_bad_size
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
         dissipated = state(statev_dissipation)
         if (ndir == 3) call rotate_tangential(drot, state)
-        call interface_update(rdisp, drdisp, dtime, props, state, stress, ddsddr, status)
+        call interface_update(ndir, rdisp, drdisp, dtime, props, state, stress, ddsddr, status)
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
@@ -54,7 +60,9 @@ subroutine uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, ddfddr, sta
     if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
     if (status < 0) return
 
-    sed = elastic_energy(props, state(statev_u_n), state(statev_u_et:statev_u_et + ndir - 2))
+    second = 0.0_wp
+    if (ndir == 3) second = state(statev_u_et + 1)
+    sed = elastic_energy(props, state(statev_u_n), state(statev_u_et), second)
     sfd = state(statev_dissipation) - dissipated
     spd = 0.0_wp
     svd = 0.0_wp
@@ -64,4 +72,31 @@ subroutine uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, ddfddr, sta
     lsdi = merge(1, 0, lopenclose >= 0 .and. lopenclose /= now)
     lopenclose = now
     statev(1:statev_size) = state
-end subroutine uinter
+
+contains
+
+    !> A linear perturbation step asks for the stiffness of the base state: about it the contact
+    !> moves without time, and nothing of it changes.
+    subroutine base_stiffness()
+        real(wp) :: base(statev_size), traction(3), tangent(9), still(3)
+        integer :: i, j
+
+        status = friction_bad_size
+        still = 0.0_wp
+        if (nstatv >= statev_size) then
+            base = statev(1:statev_size)
+            call host_update(ndir, still, 0.0_wp, nprops, props, base, traction, tangent, status)
+        end if
+        if (status < 0) then
+            call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
+            return
+        end if
+        do j = 1, ndir
+            do i = 1, ndir
+                ddsddr(i, j) = tangent((j - 1) * ndir + i)
+                if (i > 1 .and. j == 1) ddsddr(i, j) = -ddsddr(i, j)
+            end do
+        end do
+    end subroutine base_stiffness
+
+end subroutine stickslip_uinter

@@ -5,11 +5,14 @@
 !>
 !> gap = thickness * strain, traction = stress; tension positive. The layer's normal is local axis 3
 !> of a solid (ntens 6), local axis 2 in plane strain (ntens 4), and the first component of a
-!> cohesive element (ntens 2 or 3).
-subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
-    time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
-    coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use friction_host, only : cut_factor, error_text, rotate_tangential, stdb_abqerr
+!> cohesive element (ntens 2 or 3). Under NLGEOM a layer of solid elements, without *ORIENTATION,
+!> may slide as far as it likes, as its strain increments are those of the deformed layer; but it
+!> must not turn.
+subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, &
+    drpldt, stran, dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &
+    nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, &
+    jstep, kinc)
+    use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, stdb_abqerr
     use friction_kinds, only : wp
     use friction_layer, only : layer_update
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
@@ -26,19 +29,70 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     real(wp), intent(in) :: time(2), temp, dtemp, predef(*), dpred(*), coords(3), celent, &
         dfgrd0(3, 3), dfgrd1(3, 3)
     character(len=80), intent(in) :: cmname
+    integer, parameter :: large_displacements = 1   ! in jstep(3)
+    real(wp), parameter :: largest_tilt = 1.0e-3_wp
     real(wp) :: state(statev_size)
     integer :: status
 
+    if (ndi == 3 .and. jstep(3) == large_displacements) then
+        if (tilt() > largest_tilt) then
+            call refuse('stickslip, UMAT: under NLGEOM a layer of solid elements has turned out ' &
+                // 'of its plane, and its normal is no longer the local axis; use cohesive ' &
+                // 'elements or UINTER')
+            return
+        end if
+    end if
     status = friction_bad_size
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
-        if (ntens == 6) call rotate_tangential(drot(1:2, 1:2), state)
-        call layer_update(ndi, nshr, props, dstran, dtime, state, stress, ddsdde, sse, spd, status)
+        if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
+        call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &
+            spd, status)
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
-        call stdb_abqerr(-3, error_text('UMAT', status), [noel, npt], time, [cmname(1:8)])
+        call refuse(error_text('UMAT', status))
         return
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
     if (status >= 0) statev(1:statev_size) = state
-end subroutine umat
+
+contains
+
+    !> How far the fibres of the layer's plane have turned towards its normal.
+    pure function tilt()
+        real(wp) :: tilt
+        integer :: normal
+
+        normal = nshr / 2 + 2   ! 3 in space, 2 in plane strain
+        tilt = maxval(abs(dfgrd1(normal, 1:normal - 1)))
+    end function tilt
+
+    !> The part of a rotation that is about the layer's normal. The rest comes of the shear, in
+    !> which the layer's plane does not turn.
+    pure function spin_in_plane(rotation) result(spin)
+        real(wp), intent(in) :: rotation(3, 3)
+        real(wp) :: spin(2, 2)
+        real(wp) :: cosine, sine, length
+
+        cosine = rotation(1, 1) + rotation(2, 2)
+        sine = rotation(2, 1) - rotation(1, 2)
+        length = hypot(cosine, sine)
+        if (.not. length > 0.0_wp) then
+            cosine = 1.0_wp
+            length = 1.0_wp
+        end if
+        spin(1, 1) = cosine / length
+        spin(2, 1) = sine / length
+        spin(1, 2) = -spin(2, 1)
+        spin(2, 2) = spin(1, 1)
+    end function spin_in_plane
+
+    subroutine refuse(cause)
+        character(len=*), intent(in) :: cause
+        character(len=error_length) :: text
+
+        text = cause
+        call stdb_abqerr(-3, text, [noel, npt], time, [cmname(1:8)])
+    end subroutine refuse
+
+end subroutine stickslip_umat

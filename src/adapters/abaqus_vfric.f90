@@ -3,18 +3,16 @@
 !>
 !>     *FRICTION, USER, DEPVAR=8, PROPERTIES=9   with the constants of `friction_update`
 !>
-!> The local axes turn with the slip from call to call, and without slip there are none. So the law
-!> has axes of its own that stay with the surface, and statev(2:4) holds the elastic tangential
-!> displacement as a vector in global axes; the normal displacement is Abaqus's own.
-subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, nmstnod, nfricdir, &
-    ndir, nstatevar, nprops, ntemp, npred, numdeftfv, jslvuid, jmstuid, jconslvid, jconmstid, &
-    timstep, timglb, dtimprev, surfint, surfslv, surfmst, lconttype, dslipfric, fstickforce, &
-    ftangprev, fnormal, frictionwork, shape, coordslv, coordmst, dircossl, dircosn, props, &
-    areaslv, tempslv, predefslv, tempmst, predefmst)
-    use friction_host, only : error_text, host_tangential, xplb_abqerr
+!> With penalty contact: kinematic contact hands in a slip that is only predicted.
+subroutine stickslip_vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, &
+    nmstnod, nfricdir, ndir, nstatevar, nprops, ntemp, npred, numdeftfv, jslvuid, jmstuid, &
+    jconslvid, jconmstid, timstep, timglb, dtimprev, surfint, surfslv, surfmst, lconttype, &
+    dslipfric, fstickforce, ftangprev, fnormal, frictionwork, shape, coordslv, coordmst, &
+    dircossl, dircosn, props, areaslv, tempslv, predefslv, tempmst, predefmst)
+    use friction_explicit, only : explicit_point, rest_out_of_contact, slide_in_contact
+    use friction_host, only : error_text, xplb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_zero_time_increment, statev_size, &
-        statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_size, statev_size
     implicit none
     integer, intent(in) :: ncontact                            !! points in contact
     integer, intent(in) :: nslvnod                             !! points of the surface
@@ -41,10 +39,9 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
         tempmst(*), predefmst(*)
     integer, intent(in) :: jslvuid(*), jmstuid(*), jconmstid(*)
     character(len=80), intent(in) :: surfint, surfslv, surfmst
-    real(wp) :: tau(nfricdir), dtau_du(nfricdir, nfricdir), dtau_dp(nfricdir), area
-    real(wp) :: axes(ndir, nfricdir), turn(nfricdir, nfricdir), state(statev_size), &
-        no_slip(nfricdir)
-    logical :: in_contact(nslvnod)
+    type(explicit_point) :: point
+    real(wp) :: force(2)
+    logical :: in_contact
     integer :: c, i, status
 
     status = friction_bad_size
@@ -52,105 +49,43 @@ subroutine vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, nslvnod, n
         call refuse(0)
         return
     end if
-
-    in_contact = .false.
-    no_slip = 0.0_wp
+    point = explicit_point(ndir, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, dtimprev)
     do c = 1, ncontact
         i = jconslvid(c)
-        area = areaslv(i)
-        in_contact(i) = area > 0.0_wp
         ftangential(:, c) = 0.0_wp
-        if (.not. in_contact(i)) cycle
-        axes = surface_axes(dircosn(:, c))
-        turn = matmul(transpose(axes), slip_axes(dircossl(:, c), dircosn(:, c)))
-        call load_state(i)
-        call host_tangential(matmul(turn, dslipfric(1:nfricdir, c)), fnormal(c) / area, dtimprev, &
-            props, state, tau, dtau_du, dtau_dp, status)
-        ! where no time has passed nothing has slid, whatever the host moved into place
-        if (status == friction_zero_time_increment) call host_tangential(no_slip, &
-            fnormal(c) / area, dtimprev, props, state, tau, dtau_du, dtau_dp, status)
+        if (.not. areaslv(i) > 0.0_wp) cycle
+        point%along(1:ndir) = dircossl(:, c)
+        point%normal(1:ndir) = dircosn(:, c)
+        point%slip(1:nfricdir) = dslipfric(1:nfricdir, c)
+        point%stick_force = fstickforce(c)
+        point%normal_force = fnormal(c)
+        point%area = areaslv(i)
+        call slide_in_contact(point, props, statev(1:statev_size, i), force, status)
         if (status < 0) then
             call refuse(i)
             return
         end if
-        call store_state(i)
-        ftangential(:, c) = -matmul(tau, turn) * area
-        ! the host takes what opposes the slip, and no more than prevents it
-        ftangential(1, c) = min(max(ftangential(1, c), -fstickforce(c)), 0.0_wp)
+        ftangential(:, c) = force(1:nfricdir)
     end do
-
-    ! points out of contact carry nothing and heal
-    axes = 0.0_wp
     do i = 1, nslvnod
-        if (in_contact(i)) cycle
-        call load_state(i)
-        call host_tangential(no_slip, 0.0_wp, dtimprev, props, state, tau, dtau_du, dtau_dp, &
-            status)
+        in_contact = .false.
+        do c = 1, ncontact
+            in_contact = in_contact .or. (jconslvid(c) == i .and. areaslv(i) > 0.0_wp)
+        end do
+        if (in_contact) cycle
+        call rest_out_of_contact(dtimprev, props, statev(1:statev_size, i), status)
         if (status < 0) then
             call refuse(i)
             return
         end if
-        call store_state(i)
     end do
 
 contains
 
-    !> The host's tangential axes as columns: along the slip, and in space at right angles to it and
-    !> the normal.
-    pure function slip_axes(along, normal) result(columns)
-        real(wp), intent(in) :: along(ndir), normal(ndir)
-        real(wp) :: columns(ndir, nfricdir)
+    subroutine refuse(place)
+        integer, intent(in) :: place   !! in the surface; 0 for all
 
-        columns(:, 1) = along
-        if (ndir == 3) columns(:, 2) = [normal(2) * along(3) - normal(3) * along(2), &
-            normal(3) * along(1) - normal(1) * along(3), &
-            normal(1) * along(2) - normal(2) * along(1)]
-    end function slip_axes
-
-    !> The law's tangential axes: the projection of the global x axis on the surface, or of z where
-    !> x is the normal, and in space what is at right angles to it. So Abaqus chooses axes, too.
-    pure function surface_axes(normal) result(columns)
-        real(wp), intent(in) :: normal(ndir)
-        real(wp) :: columns(ndir, nfricdir)
-        real(wp), parameter :: within = 1.75e-3_wp   ! a tenth of a degree
-        real(wp) :: along(ndir)
-        integer :: axis
-
-        if (ndir == 2) then
-            columns(:, 1) = [normal(2), -normal(1)]
-            return
-        end if
-        axis = 1
-        if (norm2(normal(2:3)) < within) axis = 3
-        along = -normal(axis) * normal
-        along(axis) = along(axis) + 1.0_wp
-        columns = slip_axes(along / norm2(along), normal)
-    end function surface_axes
-
-    !> State with the elastic displacement in the law's axes.
-    subroutine load_state(point)
-        integer, intent(in) :: point
-
-        state = statev(1:statev_size, point)
-        state(statev_u_n:statev_u_et + 1) = 0.0_wp
-        state(statev_u_et:statev_u_et + nfricdir - 1) = &
-            matmul(statev(statev_u_n:statev_u_n + ndir - 1, point), axes)
-    end subroutine load_state
-
-    !> And back in global axes.
-    subroutine store_state(point)
-        integer, intent(in) :: point
-
-        statev(1:statev_size, point) = state
-        statev(statev_u_n:statev_u_et + 1, point) = 0.0_wp
-        statev(statev_u_n:statev_u_n + ndir - 1, point) = &
-            matmul(axes, state(statev_u_et:statev_u_et + nfricdir - 1))
-    end subroutine store_state
-
-    subroutine refuse(point)
-        integer, intent(in) :: point   !! in the surface; 0 for all
-
-        call xplb_abqerr(-3, error_text('VFRIC', status), [point], [timglb], [surfint(1:8)])
+        call xplb_abqerr(-3, error_text('VFRIC', status), [place], [timglb], [surfint(1:8)])
     end subroutine refuse
 
-end subroutine vfric
+end subroutine stickslip_vfric

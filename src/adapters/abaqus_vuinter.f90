@@ -3,11 +3,11 @@
 !>     *SURFACE INTERACTION, USER, DEPVAR=8, PROPERTIES=9   with the constants of `friction_update`
 !>
 !> Abaqus counts compression and penetration positive: the first component changes its sign.
-subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, kstep, kinc, &
-    nfacnod, nslvnod, nmstnod, nsurfdir, ndir, nstatevar, nprops, ntemp, npred, numdeftfv, &
-    jslvuid, jmstuid, jconmstid, timstep, timglb, dtimcur, surfint, surfslv, surfmst, rdisp, &
-    drdisp, drot, stiffdflt, conddflt, shape, coordslv, coordmst, alocaldir, props, areaslv, &
-    tempslv, dtempslv, predefslv, dpredefslv, tempmst, dtempmst, predefmst, dpredefmst)
+subroutine stickslip_vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, &
+    kstep, kinc, nfacnod, nslvnod, nmstnod, nsurfdir, ndir, nstatevar, nprops, ntemp, npred, &
+    numdeftfv, jslvuid, jmstuid, jconmstid, timstep, timglb, dtimcur, surfint, surfslv, surfmst, &
+    rdisp, drdisp, drot, stiffdflt, conddflt, shape, coordslv, coordmst, alocaldir, props, &
+    areaslv, tempslv, dtempslv, predefslv, dpredefslv, tempmst, dtempmst, predefmst, dpredefmst)
     use friction_host, only : elastic_energy, error_text, interface_update, rotate_tangential, &
         xplb_abqerr
     use friction_kinds, only : wp
@@ -34,7 +34,7 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
         tempmst(*), dtempmst(*), predefmst(*), dpredefmst(*)
     integer, intent(in) :: jslvuid(*), jmstuid(*), jconmstid(*)
     character(len=80), intent(in) :: surfint, surfslv, surfmst
-    real(wp) :: state(statev_size), stiffness(ndir, ndir), no_motion(ndir), dissipated
+    real(wp) :: state(statev_size), stiffness(9), no_motion(3), dissipated, second
     integer :: i, status
 
     no_motion = 0.0_wp
@@ -44,23 +44,24 @@ subroutine vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, statev, ks
             state = statev(1:statev_size, i)
             dissipated = state(statev_dissipation)
             if (ndir == 3) call rotate_tangential(drot(:, :, i), state)
-            call interface_update(rdisp(:, i), drdisp(:, i), dtimcur, props, state, stress(:, i), &
-                stiffness, status)
+            call interface_update(ndir, rdisp(:, i), drdisp(:, i), dtimcur, props, state, &
+                stress(:, i), stiffness, status)
             ! where no time has passed nothing has slid, whatever the host moved into place
-            if (status == friction_zero_time_increment) call interface_update(rdisp(:, i), &
-                no_motion, dtimcur, props, state, stress(:, i), stiffness, status)
+            if (status == friction_zero_time_increment) call interface_update(ndir, &
+                rdisp(:, i), no_motion, dtimcur, props, state, stress(:, i), stiffness, status)
         end if
         if (status < 0) then
             call xplb_abqerr(-3, error_text('VUINTER', status), jslvuid(i:i), [timglb], &
                 [surfint(1:8)])
             return
         end if
-        sed(i) = elastic_energy(props, state(statev_u_n), &
-            state(statev_u_et:statev_u_et + ndir - 2))
+        second = 0.0_wp
+        if (ndir == 3) second = state(statev_u_et + 1)
+        sed(i) = elastic_energy(props, state(statev_u_n), state(statev_u_et), second)
         sfd(i) = state(statev_dissipation) - dissipated
         scd(i) = 0.0_wp
         spd(i) = 0.0_wp
         svd(i) = 0.0_wp
         statev(1:statev_size, i) = state
     end do
-end subroutine vuinter
+end subroutine stickslip_vuinter

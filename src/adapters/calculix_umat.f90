@@ -8,6 +8,8 @@
 !> The layer's normal is local axis 3 (*ORIENTATION). CalculiX keeps the symmetric part of the
 !> stiffness only; half of the coupling of friction to the pressure would mislead it, so the
 !> coupling is left out of the stiffness (not of the stress).
+!>
+!> Under NLGEOM strain and stress are those of Green-Lagrange and Piola-Kirchhoff.
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
@@ -15,11 +17,14 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         used_length
     use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
-    use friction_layer, only : layer_update
-    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
+    use friction_finite_layer, only : finite_layer_update
+    use friction_layer, only : first_friction_prop, layer_shear_stiffness, layer_update
+    use friction_mod, only : friction_bad_size, friction_is_orthotropic, friction_no_convergence, &
+        statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! 3, 3, 6: 11, 22, 33, 12, 13, 23
-    integer, intent(in) :: nstatv, nprops, noel, npt, jstep(4), kinc
+    integer, intent(in) :: nstatv, nprops, noel, npt, kinc
+    integer, intent(in) :: jstep(4)                   !! (3): 1 under NLGEOM
     real(wp), intent(inout) :: stress(ntens)          !! start in, end out [F/L^2]
     real(wp), intent(inout) :: statev(nstatv)         !! state of the friction routine
     real(wp), intent(inout) :: ddsdde(ntens, ntens)   !! d(stress)/d(dstran) [F/L^2]
@@ -31,29 +36,59 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         dpred(*), celent
     integer, intent(in) :: layer, kspt   ! and these are not set by CalculiX
     character(len=80), intent(in) :: cmname
-    real(wp) :: increment(ntens), dt, elastic, dissipated
+    character(len=*), parameter :: rotated = '@ABAQUSNL'
+    integer, parameter :: large_displacements = 1     ! in jstep(3)
+    real(wp) :: increment(6), dt, elastic, dissipated
     integer :: status
 
+    if (cmname(1:len(rotated)) == rotated) call stop_with_cause('stickslip, UMAT: ' // rotated &
+        // '_STICKSLIP hands over logarithmic strain, whose axes turn with the slip; write ' &
+        // '@ABAQUS_STICKSLIP, with or without NLGEOM')
     ! At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
     ! the step, any dtime, and the whole strain as its increment.
-    increment = dstran
-    dt = dtime
-    if (time(1) < 0.0_wp) then
-        increment = 0.0_wp
-        dt = 0.0_wp
-    end if
-
     status = friction_bad_size
-    if (nstatv >= statev_size) call layer_update(ndi, nshr, props, increment, dt, statev, stress, &
-        ddsdde, elastic, dissipated, status)
+    if (nstatv >= statev_size .and. ntens == 6) then
+        increment = dstran
+        dt = dtime
+        if (time(1) < 0.0_wp) dt = 0.0_wp
+        if (jstep(3) == large_displacements) then
+            if (time(1) < 0.0_wp) then   ! from the strain to itself
+                increment = 0.0_wp
+                call finite_layer_update(nprops, props, stran + dstran, increment, dt, statev, &
+                    stress, ddsdde, status)
+            else
+                call finite_layer_update(nprops, props, stran, increment, dt, statev, stress, &
+                    ddsdde, status)
+            end if
+        else
+            if (time(1) < 0.0_wp) increment = 0.0_wp
+            call layer_update(ndi, nshr, nprops, props, increment, dt, statev, stress, ddsdde, &
+                elastic, dissipated, status)
+            if (status >= 0) ddsdde(5:6, 3) = 0.0_wp
+        end if
+    end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stop_with_cause(error_text('UMAT', status))
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
     if (status < 0) return
-    ddsdde(5:6, 3) = 0.0_wp
+    if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)
 
 contains
+
+    !> Friction that depends on the direction has an unsymmetric stiffness also within the surface.
+    !> Of its symmetric part alone Newton's iterations go round in circles; with a small share of
+    !> the elastic stiffness they come to rest.
+    pure subroutine stiffen_shear(matrix)
+        real(wp), intent(inout) :: matrix(6, 6)
+        real(wp), parameter :: share = 0.05_wp
+        integer :: i
+
+        do i = 5, 6
+            matrix(i, 5:6) = (1.0_wp - share) * matrix(i, 5:6)
+            matrix(i, i) = matrix(i, i) + share * layer_shear_stiffness(props)
+        end do
+    end subroutine stiffen_shear
 
     !> As CalculiX ends for errors in an input deck.
     subroutine stop_with_cause(cause)

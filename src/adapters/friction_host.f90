@@ -1,9 +1,9 @@
 !> What several adapters need between a host and `friction_mod`. No physics.
 module friction_host
     use friction_kinds, only : wp
-    use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
-        friction_snap_back, friction_tangential, friction_update, friction_zero_time_increment, &
-        prop_alpha_n, prop_alpha_t, statev_status, statev_u_et, statev_u_n
+    use friction_mod, only : array_sizes, friction_message, friction_no_convergence, friction_ok, &
+        friction_snap_back, friction_tangential, friction_zero_time_increment, prop_alpha_n, &
+        prop_alpha_t, statev_size, statev_status, statev_u_et, statev_u_n, update_arrays
     implicit none
     private
 
@@ -45,30 +45,35 @@ contains
 
     !> `friction_update`, also for a host that asks for the forces as they stand, with neither time
     !> nor motion. Laws of the slip rate cannot do without time; an instant leaves all as it is.
-    pure subroutine host_update(du, dtime, props, statev, traction, tangent, status)
-        real(wp), intent(in) :: du(:)              !! as in `friction_update`, and so on [L]
+    !> Sizes are explicit: what has none is copied to and fro.
+    pure subroutine host_update(ndir, du, dtime, nprops, props, statev, traction, tangent, status)
+        integer, intent(in) :: ndir                     !! 2 or 3
+        real(wp), intent(in) :: du(ndir)           !! as in `friction_update`, and so on [L]
         real(wp), intent(in) :: dtime              !! [T]
-        real(wp), intent(in) :: props(:)
-        real(wp), intent(inout) :: statev(:)
-        real(wp), intent(inout) :: traction(:)     !! [F/L^2]
-        real(wp), intent(inout) :: tangent(:, :)   !! [F/L^3]
+        integer, intent(in) :: nprops
+        real(wp), intent(in) :: props(nprops)
+        real(wp), intent(inout) :: statev(statev_size)
+        real(wp), intent(inout) :: traction(ndir)       !! [F/L^2]
+        real(wp), intent(inout) :: tangent(ndir, ndir)  !! [F/L^3]
         integer, intent(out) :: status
 
-        call friction_update(du, dtime, props, statev, traction, tangent, status)
+        call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, dtime, props, statev, &
+            traction, tangent, status)
         if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
-        call friction_update(du, instant, props, statev, traction, tangent, status)
+        call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, instant, props, statev, &
+            traction, tangent, status)
     end subroutine host_update
 
     !> The same of `friction_tangential`.
     pure subroutine host_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
-        real(wp), intent(in) :: du(:)            !! as in `friction_tangential`, and so on [L]
+        real(wp), intent(in), contiguous :: du(:)   !! as in `friction_tangential`, and so on [L]
         real(wp), intent(in) :: pressure         !! [F/L^2]
         real(wp), intent(in) :: dtime            !! [T]
-        real(wp), intent(in) :: props(:)
-        real(wp), intent(inout) :: statev(:)
-        real(wp), intent(inout) :: tau(:)        !! [F/L^2]
-        real(wp), intent(inout) :: by_du(:, :)   !! [F/L^3]
-        real(wp), intent(inout) :: by_p(:)       !! [-]
+        real(wp), intent(in), contiguous :: props(:)
+        real(wp), intent(inout), contiguous :: statev(:)
+        real(wp), intent(inout), contiguous :: tau(:)        !! [F/L^2]
+        real(wp), intent(inout), contiguous :: by_du(:, :)   !! [F/L^3]
+        real(wp), intent(inout), contiguous :: by_p(:)       !! [-]
         integer, intent(out) :: status
 
         call friction_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
@@ -79,16 +84,20 @@ contains
     !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u.
     pure subroutine rotate_tangential(drot, statev)
         real(wp), intent(in) :: drot(2, 2)       !! rotation of the axes in this increment [-]
-        real(wp), intent(inout) :: statev(:)     !! state at the start of the increment
+        real(wp), intent(inout) :: statev(statev_size)   !! state at the start of the increment
+        real(wp) :: u(2)
 
-        statev(statev_u_et:statev_u_et + 1) = matmul(drot, statev(statev_u_et:statev_u_et + 1))
+        u(1) = statev(statev_u_et)
+        u(2) = statev(statev_u_et + 1)
+        statev(statev_u_et) = drot(1, 1) * u(1) + drot(1, 2) * u(2)
+        statev(statev_u_et + 1) = drot(2, 1) * u(1) + drot(2, 2) * u(2)
     end subroutine rotate_tangential
 
     !> The contact was open since the last call: what was stored elastically is gone. How the law
     !> takes that is its own affair; constants or a state that it refuses are left for the update.
     pure subroutine forget_elastic(props, statev)
-        real(wp), intent(in) :: props(:)       !! constants of the friction routine
-        real(wp), intent(inout) :: statev(:)   !! state at the start of the increment
+        real(wp), intent(in), contiguous :: props(:)       !! constants of the friction routine
+        real(wp), intent(inout), contiguous :: statev(:)   !! state at the start of the increment
         real(wp) :: tau(2), by_du(2, 2), by_p(2)
         integer :: status
 
@@ -101,22 +110,26 @@ contains
     !>
     !> Such a host knows the gap; the state variables follow it, so that an initial gap or
     !> overclosure, and what the host corrects on its own, arrive here.
-    pure subroutine interface_update(position, increment, dtime, props, statev, stress, stiffness, &
-        status)
-        real(wp), intent(in) :: position(:)         !! at the end: penetration, tangential [L]
-        real(wp), intent(in) :: increment(:)        !! of the position [L]
+    pure subroutine interface_update(ndir, position, increment, dtime, props, statev, stress, &
+        stiffness, status)
+        integer, intent(in) :: ndir                 !! components, 2 or 3
+        real(wp), intent(in) :: position(ndir)      !! at the end: penetration, tangential [L]
+        real(wp), intent(in) :: increment(ndir)     !! of the position [L]
         real(wp), intent(in) :: dtime               !! [T]
-        real(wp), intent(in) :: props(:)            !! constants of the friction routine
-        real(wp), intent(inout) :: statev(:)        !! state of the friction routine
-        real(wp), intent(inout) :: stress(:)        !! pressure, tangential traction [F/L^2]
-        real(wp), intent(inout) :: stiffness(:, :)  !! d(stress)/d(position) [F/L^3]
+        real(wp), intent(in), contiguous :: props(:)        !! constants of the friction routine
+        real(wp), intent(inout) :: statev(statev_size)      !! state of the friction routine
+        real(wp), intent(inout) :: stress(ndir)             !! pressure, tangential traction [F/L^2]
+        real(wp), intent(inout) :: stiffness(ndir, ndir)    !! d(stress)/d(position) [F/L^3]
         integer, intent(out) :: status              !! of the friction routine
         real(wp), parameter :: no_master = 1.0e30_wp   !! a gap as wide as this is to nothing
-        real(wp) :: du(size(increment)), u_n
+        real(wp) :: du(3), u_n
+        integer :: i
 
         u_n = -(position(1) - increment(1))
-        du = increment
         du(1) = -increment(1)
+        do i = 2, ndir
+            du(i) = increment(i)
+        end do
         if (-position(1) > no_master) then   ! open, whatever the increment says
             u_n = no_master
             du = 0.0_wp
@@ -127,17 +140,19 @@ contains
         end if
         call place_point(u_n, props, statev, status)
         if (status < 0) return
-        call host_update(du, dtime, props, statev, stress, stiffness, status)
+        call host_update(ndir, du, dtime, size(props), props, statev, stress, stiffness, status)
         if (status < 0) return
         stress(1) = -stress(1)
-        stiffness(2:, 1) = -stiffness(2:, 1)
+        do i = 2, ndir
+            stiffness(i, 1) = -stiffness(i, 1)
+        end do
     end subroutine interface_update
 
     !> Puts a point where it starts the increment.
     pure subroutine place_point(u_n, props, statev, status)
         real(wp), intent(in) :: u_n            !! normal displacement at the start, > 0 open [L]
-        real(wp), intent(in) :: props(:)       !! constants of the friction routine
-        real(wp), intent(inout) :: statev(:)   !! state at the start of the increment
+        real(wp), intent(in), contiguous :: props(:)     !! constants of the friction routine
+        real(wp), intent(inout) :: statev(statev_size)   !! state at the start of the increment
         integer, intent(out) :: status         !! of the friction routine
         real(wp) :: traction(2), tangent(2, 2)
 
@@ -145,19 +160,20 @@ contains
         if (abs(statev(statev_status)) > 0.0_wp) then
             statev(statev_u_n) = u_n
         else
-            call friction_update([u_n, 0.0_wp], 0.0_wp, props, statev, traction, tangent, status)
+            call host_update(2, [u_n, 0.0_wp], 0.0_wp, size(props), props, statev, traction, &
+                tangent, status)
         end if
     end subroutine place_point
 
     !> Elastic energy per area held by the contact springs.
-    pure function elastic_energy(props, u_n, u_et) result(energy)
-        real(wp), intent(in) :: props(:)   !! constants of the friction routine
+    pure function elastic_energy(props, u_n, u_et1, u_et2) result(energy)
+        real(wp), intent(in) :: props(prop_alpha_t)   !! constants of the friction routine
         real(wp), intent(in) :: u_n  !! normal displacement; 0 where the host has its own spring [L]
-        real(wp), intent(in) :: u_et(:)    !! elastic tangential displacement [L]
+        real(wp), intent(in) :: u_et1, u_et2       !! elastic tangential displacement [L]
         real(wp) :: energy                 !! [F/L]
 
         energy = 0.5_wp * (props(prop_alpha_n) * min(u_n, 0.0_wp)**2 &
-            + props(prop_alpha_t) * sum(u_et**2))
+            + props(prop_alpha_t) * (u_et1**2 + u_et2**2))
     end function elastic_energy
 
     !> The factor on the time increment that a status asks for: below 1 where the host should cut.

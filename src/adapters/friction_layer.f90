@@ -1,18 +1,26 @@
 !> The contact as a thin layer of elements: gap = thickness * strain, traction = stress. What the
-!> UMATs of Abaqus and CalculiX share.
+!> UMATs of Abaqus and CalculiX share. Nothing here is allocated: components are gathered one by
+!> one.
 module friction_layer
     use, intrinsic :: iso_fortran_env, only : int64
     use friction_host, only : elastic_energy, host_update
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_property, friction_bad_size, statev_dissipation, &
-        statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_property, friction_bad_size, friction_ok, prop_alpha_t, &
+        statev_dissipation, statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
-    public :: layer_update
+    public :: layer_constants, layer_shear_stiffness, layer_update, read_layer
 
-    !> Places in the host's list of constants.
-    integer, parameter :: at_thickness = 1, at_modulus = 2, at_friction = 3
+    !> Places of the layer's own constants; those of the friction routine follow.
+    integer, parameter :: prop_thickness = 1, prop_modulus = 2
+    integer, parameter, public :: first_friction_prop = 3
+
+    !> A layer's own constants.
+    type :: layer_constants
+        real(wp) :: thickness   !! > 0 [L]
+        real(wp) :: modulus     !! in the plane, >= 0 [F/L^2]
+    end type layer_constants
 
     !> Where the components of the traction stand in the host's stress.
     type :: layer_components
@@ -24,61 +32,82 @@ module friction_layer
 
 contains
 
+    !> The layer's own constants from a host's list of them.
+    pure subroutine read_layer(nprops, props, layer, status)
+        integer, intent(in) :: nprops
+        real(wp), intent(in) :: props(nprops)   !! thickness, modulus, friction constants
+        type(layer_constants), intent(out) :: layer
+        integer, intent(out) :: status          !! ok, bad size, or bad property
+
+        status = friction_bad_size
+        if (nprops < first_friction_prop) return
+        status = friction_bad_property
+        layer = layer_constants(props(prop_thickness), props(prop_modulus))
+        if (.not. (is_finite(layer%thickness) .and. is_finite(layer%modulus))) return
+        if (layer%thickness <= 0.0_wp .or. layer%modulus < 0.0_wp) return
+        status = friction_ok
+    end subroutine read_layer
+
+    !> Elastic shear stiffness, of constants that an update has taken.
+    pure function layer_shear_stiffness(props) result(stiffness)
+        real(wp), intent(in) :: props(first_friction_prop - 1 + prop_alpha_t)
+        real(wp) :: stiffness   !! [F/L^2]
+
+        stiffness = props(prop_thickness) * props(first_friction_prop - 1 + prop_alpha_t)
+    end function layer_shear_stiffness
+
     !> Stress and stiffness of a layer element from a strain increment.
     !>
     !> The layer's normal is axis 3 of a solid, axis 2 in plane strain, the first component of a
     !> cohesive element. In its plane the layer is elastic and does not contract sideways.
-    pure subroutine layer_update(ndi, nshr, props, dstran, dtime, statev, stress, ddsdde, sse, &
-        spd, status)
+    pure subroutine layer_update(ndi, nshr, nprops, props, dstran, dtime, statev, stress, ddsdde, &
+        sse, spd, status)
         integer, intent(in) :: ndi, nshr            !! direct and shear components of the host
-        real(wp), intent(in) :: props(:)   !! thickness [L], modulus [F/L^2], friction constants
-        real(wp), intent(in) :: dstran(:)           !! strain increment, engineering shear [-]
+        integer, intent(in) :: nprops
+        real(wp), intent(in) :: props(nprops)   !! thickness [L], modulus [F/L^2], friction's
+        real(wp), intent(in) :: dstran(ndi + nshr)   !! strain increment, engineering shear [-]
         real(wp), intent(in) :: dtime               !! [T]
-        real(wp), intent(inout) :: statev(:)        !! state of the friction routine
-        real(wp), intent(inout) :: stress(:)        !! start in, end out; tension positive [F/L^2]
-        real(wp), intent(inout) :: ddsdde(:, :)     !! d(stress)/d(dstran) [F/L^2]
+        real(wp), intent(inout) :: statev(statev_size)    !! state of the friction routine
+        real(wp), intent(inout) :: stress(ndi + nshr)     !! start in, end out; tension positive
+                                                          !! [F/L^2]
+        real(wp), intent(inout) :: ddsdde(ndi + nshr, ndi + nshr)   !! d(stress)/d(dstran) [F/L^2]
         real(wp), intent(inout) :: sse, spd   !! energy per volume: elastic, dissipated [F/L^2]
         integer, intent(out) :: status              !! of the friction routine
         type(layer_components) :: at
-        real(wp) :: traction(3), tangent(3, 3), thickness, modulus
-        integer :: n
+        type(layer_constants) :: layer
+        real(wp) :: du(3), traction(3), tangent(9)
+        integer :: i, j
 
-        status = friction_bad_size
         at = components(ndi, nshr)
-        n = at%n
-        if (n == 0 .or. size(props) < at_friction .or. size(statev) < statev_size) return
-        status = friction_bad_property
-        if (.not. (is_finite(props(at_thickness)) .and. is_finite(props(at_modulus)))) return
-        thickness = props(at_thickness)
-        modulus = props(at_modulus)
-        if (thickness <= 0.0_wp .or. modulus < 0.0_wp) return
-
-        call host_update(thickness * dstran(at%place(1:n)), dtime, props(at_friction:), statev, &
-            traction(1:n), tangent(1:n, 1:n), status)
+        status = friction_bad_size
+        if (at%n == 0) return
+        call read_layer(nprops, props, layer, status)
         if (status < 0) return
-        call extend_in_plane(at, modulus, dstran, stress, ddsdde, sse)
-        stress(at%place(1:n)) = traction(1:n)
-        ddsdde(at%place(1:n), at%place(1:n)) = thickness * tangent(1:n, 1:n)
-        sse = sse + elastic_energy(props(at_friction:), statev(statev_u_n), &
-            statev(statev_u_et:statev_u_et + n - 2)) / thickness
-        spd = statev(statev_dissipation) / thickness
+        do i = 1, at%n
+            du(i) = layer%thickness * dstran(at%place(i))
+        end do
+        call host_update(at%n, du, dtime, nprops - first_friction_prop + 1, &
+            props(first_friction_prop), statev, traction, tangent, status)
+        if (status < 0) return
+        call extend_in_plane(at, ndi + nshr, layer%modulus, dstran, stress, ddsdde, sse)
+        do j = 1, at%n
+            stress(at%place(j)) = traction(j)
+            do i = 1, at%n
+                ddsdde(at%place(i), at%place(j)) = layer%thickness * tangent((j - 1) * at%n + i)
+            end do
+        end do
+        sse = sse + elastic_energy(props(first_friction_prop), statev(statev_u_n), &
+            statev(statev_u_et), statev(statev_u_et + 1)) / layer%thickness
+        spd = statev(statev_dissipation) / layer%thickness
     end subroutine layer_update
 
-    !> Read from the exponent, so that a NaN raises no exception in the host.
-    pure function is_finite(x) result(finite)
-        real(wp), intent(in) :: x
-        logical :: finite
-        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 52)
-
-        finite = iand(transfer(x, exponent_bits), exponent_bits) /= exponent_bits
-    end function is_finite
-
     !> Elastic stresses in the plane of the layer; everything else of the stiffness is set to zero.
-    pure subroutine extend_in_plane(at, modulus, dstran, stress, ddsdde, energy)
+    pure subroutine extend_in_plane(at, ntens, modulus, dstran, stress, ddsdde, energy)
         type(layer_components), intent(in) :: at
+        integer, intent(in) :: ntens
         real(wp), intent(in) :: modulus             !! [F/L^2]
-        real(wp), intent(in) :: dstran(:)
-        real(wp), intent(inout) :: stress(:), ddsdde(:, :)
+        real(wp), intent(in) :: dstran(ntens)
+        real(wp), intent(inout) :: stress(ntens), ddsdde(ntens, ntens)
         real(wp), intent(out) :: energy             !! elastic, per volume [F/L^2]
         integer :: places(3), i, k
         real(wp) :: stiffness(3)
@@ -96,6 +125,15 @@ contains
             energy = energy + 0.5_wp * stress(i)**2 / stiffness(k)
         end do
     end subroutine extend_in_plane
+
+    !> Read from the exponent, so that a NaN raises no exception in the host.
+    pure function is_finite(x) result(finite)
+        real(wp), intent(in) :: x
+        logical :: finite
+        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 52)
+
+        finite = iand(transfer(x, exponent_bits), exponent_bits) /= exponent_bits
+    end function is_finite
 
     pure function components(ndi, nshr) result(at)
         integer, intent(in) :: ndi, nshr

@@ -28,16 +28,24 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     integer, intent(in) :: noel, npt, layer, kspt, jstep, kinc
     character(len=1), intent(in) :: cmname
     integer, parameter :: places(3) = [3, 6, 5]       ! normal, along x, along y
-    real(wp) :: traction(3), tangent(3, 3)
-    integer :: status
+    real(wp) :: du(3), traction(3), tangent(3, 3)
+    integer :: status, i, j
 
     status = friction_bad_size
-    if (ntens == 6 .and. nstatv >= statev_size) call host_update(2.0_wp * dstran(places), &
-        dtime, props, statev, traction, tangent, status)
+    if (ntens == 6 .and. nstatv >= statev_size) then
+        do i = 1, 3
+            du(i) = 2.0_wp * dstran(places(i))
+        end do
+        call host_update(3, du, dtime, nprops, props, statev, traction, tangent, status)
+    end if
     ! this host has no way to cut the step or to be told of an error
     if (status < 0) call end_host(error_text('Kratos UMAT', status), to_errors, 1)
     stress = 0.0_wp
-    stress(places) = 2.0_wp * traction
     ddsdde = 0.0_wp
-    ddsdde(places, places) = 4.0_wp * tangent
+    do j = 1, 3
+        stress(places(j)) = 2.0_wp * traction(j)
+        do i = 1, 3
+            ddsdde(places(i), places(j)) = 4.0_wp * tangent(i, j)
+        end do
+    end do
 end subroutine umat

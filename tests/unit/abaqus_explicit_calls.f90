@@ -1,10 +1,10 @@
-!> Calls of VFRIC and VUINTER with the argument lists of Abaqus/Explicit.
+!> Calls of VFRIC, VFRICTION and VUINTER with the argument lists of Abaqus/Explicit.
 module abaqus_explicit_calls
     use, intrinsic :: iso_fortran_env, only : dp => real64
     implicit none
     private
 
-    public :: call_vfric, call_vuinter
+    public :: call_vfric, call_vfriction, call_vuinter
 
     !> The points of a surface that are in contact, as VFRIC hears of them. In axes that turn from
     !> call to call: the first along the slip.
@@ -18,7 +18,7 @@ module abaqus_explicit_calls
     end type vfric_contact
 
     character(len=80), parameter :: name = 'CONTACT'
-    external :: vfric, vuinter
+    external :: vfric, vfriction, vuinter
 
 contains
 
@@ -40,6 +40,28 @@ contains
             contact%normal_force, 0.0_dp, zero, zero, zero, contact%along, contact%normal, props, &
             area, zero, zero, zero, zero)
     end subroutine call_vfric
+
+    !> The same points under general contact, each with a state and an area of its own.
+    subroutine call_vfriction(props, contact, area, dtime, state, force)
+        real(dp), intent(in) :: props(:), area(:), dtime
+        type(vfric_contact), intent(in) :: contact
+        real(dp), intent(inout) :: state(:, :, :)   !! (variable, 1 or 4 for edges, point)
+        real(dp), intent(inout) :: force(:, :)      !! (direction, point)
+        real(dp) :: zero(1), times(4)
+        integer :: node(1, size(area)), flags(3), n_dir, none(1)
+
+        n_dir = size(contact%slip, 1)
+        zero = 0.0_dp
+        none = 1
+        node = 7
+        flags = [1, 1, 0]
+        times = [0.0_dp, 0.0_dp, dtime, 0.0_dp]
+        call vfriction(force, state, contact%n, contact%n, 1, size(state, 2), 1, 4, n_dir - 1, &
+            n_dir, size(state, 1), size(props), 1, 1, flags, times, name, name, name, node, none, &
+            props, contact%slip, contact%stick_force, zero, contact%normal_force, area, &
+            contact%normal, contact%along, zero, zero, zero, zero, zero, zero, zero, zero, zero, &
+            zero)
+    end subroutine call_vfriction
 
     subroutine call_vuinter(props, rdisp, drdisp, dtime, drot, statev, stress, sed, dissipated)
         real(dp), intent(in) :: props(:), rdisp(:, :), drdisp(:, :), dtime, drot(:, :, :)

@@ -49,35 +49,47 @@ contains
             drot, zero, zero, n, 3, 1, 8, 1.0_dp, props, size(props))
     end subroutine call_fric
 
-    subroutine call_uinter(props, rdisp, drdisp, dtime, drot, statev, stress, stiffness, answer)
+    subroutine call_uinter(props, rdisp, drdisp, dtime, drot, statev, stress, stiffness, answer, &
+        perturbation)
         real(dp), intent(in) :: props(:), rdisp(:), drdisp(:), dtime, drot(2, 2)
         real(dp), intent(inout) :: statev(8), stress(:), stiffness(:, :)
         type(uinter_answer), intent(inout) :: answer
+        logical, intent(in), optional :: perturbation
+        integer :: linear
         real(dp) :: zero(9)
 
         zero = 0.0_dp
         answer%severe = 0
+        linear = 0
+        if (present(perturbation)) linear = merge(1, 0, perturbation)
         call uinter(stress, stiffness, zero, zero, zero, zero, zero, zero, statev, answer%sed, &
             answer%dissipated(1), answer%dissipated(2), answer%dissipated(3), &
             answer%dissipated(4), answer%pnewdt, rdisp, drdisp, zero, zero, zero, zero, zero, &
             dtime, 0.0_dp, name, name, name, props, zero, zero, drot, 1.0_dp, 1.0_dp, 1, &
-            size(rdisp), 8, 1, size(props), 3, 1, 1, 1, 0, answer%openclose, answer%state, &
+            size(rdisp), 8, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, answer%state, &
             answer%severe, 0)
     end subroutine call_uinter
 
-    subroutine call_umat(ndi, nshr, props, dstran, dtime, drot, statev, stress, ddsdde, answer)
+    subroutine call_umat(ndi, nshr, props, dstran, dtime, drot, statev, stress, ddsdde, answer, &
+        deformation)
         integer, intent(in) :: ndi, nshr
         real(dp), intent(in) :: props(:), dstran(:), dtime, drot(3, 3)
         real(dp), intent(inout) :: statev(8), stress(:), ddsdde(:, :)
         type(umat_answer), intent(inout) :: answer
-        real(dp) :: zero(36), scd, rpl
+        real(dp), intent(in), optional :: deformation(3, 3)   !! gradient at the end, under NLGEOM
+        real(dp) :: gradient(3, 3), zero(36), scd, rpl
         integer :: step(4)
 
         zero = 0.0_dp
-        step = 1
+        step = [1, 1, 0, 0]
+        gradient = 0.0_dp
+        if (present(deformation)) then
+            step(3) = 1
+            gradient = deformation
+        end if
         call umat(stress, statev, ddsdde, answer%sse, answer%spd, scd, rpl, zero, zero, zero, &
             zero, dstran, zero, dtime, 0.0_dp, 0.0_dp, zero, zero, name, ndi, nshr, ndi + nshr, &
-            8, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, zero, 1, 1, 1, 1, &
+            8, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, gradient, 1, 1, 1, 1, &
             step, 1)
     end subroutine call_umat
 
