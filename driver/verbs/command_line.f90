@@ -167,7 +167,7 @@ contains
             '       stickslip --help | --version', &
             '', &
             'run    integrates the slider of INPUT.nml; writes STEM.csv, STEM_events.csv and', &
-            '       STEM.png with its script STEM.gp to STEM_out, and a summary on screen', &
+            '       STEM.png (and .svg) with its script STEM.gp to STEM_out, and a summary', &
             'point  takes one contact point along a path of prescribed displacements or', &
             '       tractions; writes STEM.csv and STEM.png with its script STEM.gp', &
             'sweep  runs INPUT.nml with every combination of the values in its group &sweep;', &
@@ -208,11 +208,11 @@ contains
             '             max_iterations (25); adaptive with rtol, dt_min, dt_max; rho_infinity', &
             '  &events    drop (1e-3), part of the static friction force; slip_rate [L/T]', &
             '  &output    interval (1): steps between two rows, or every: time between them [T];', &
-            '             fields (0): of a chain; checkpoint (60) [s]', &
+            '             fields (0): of a chain; checkpoint (60) [s]; table_limit (10) [GB];', &
+            '             length_unit, force_unit, time_unit: names for pictures', &
             '  &initial   mu (mu_0), r (0), displacement (0), velocity (0), spring_force', &
             '  &chain     n_blocks, coupling [F/L], ends (''free''), scatter (0), seed (1),', &
-            '             displacement_scatter (0) [L],', &
-            '             slip_rate [L/T]', &
+            '             displacement_scatter (0) [L], slip_rate [L/T]', &
             '  all of them: docs/driver.md', &
             'and of point, beside &friction (docs/point_mode.md):', &
             '  &point     ndir (3), cycles (1), tangent (.false.), and a path, either', &

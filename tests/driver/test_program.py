@@ -485,6 +485,24 @@ class FailedRun(Program):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), (self.folder / 'whole/case.csv').read_bytes())
 
+    def test_a_long_series_is_drawn_from_few_rows_with_all_its_extremes(self):
+        text = namelist({('time', 't_end'): '31.7', ('time', 'dt'): '5e-4'})   # 63400 rows, no power of two
+        self.assertEqual(self.run_text(text, '--no-plot').returncode, 0)
+        every = {tuple(row.values()) for row in self.rows('case_out/case.csv')}
+        few = self.rows('case_out/case_picture.csv')
+        self.assertGreater(len(few), 1e4)
+        self.assertLess(len(few), 3.1e4)
+        self.assertTrue({tuple(row.values()) for row in few} <= every)
+        times = [float(row['time']) for row in few]
+        self.assertEqual(times, sorted(times))
+        self.assertLess(max(b - a for a, b in zip(times, times[1:])), 31.7 / 3000)
+        for name in ('spring_force', 'velocity'):
+            place = list(few[0]).index(name)
+            values = [float(row[place]) for row in every]
+            seen = [float(row[name]) for row in few]
+            self.assertEqual(max(map(abs, seen)), max(map(abs, values)))
+        self.assertEqual(min(float(row['spring_force']) for row in few), min(float(row[5]) for row in every))
+
     def test_a_full_disk_is_a_failed_run(self):
         small = self.folder / 'case_out'
         small.mkdir()
