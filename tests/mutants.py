@@ -103,14 +103,14 @@ class Copy:
                 (self.source / file).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / file, self.source / file)
         self.run(['cmake', '-S', str(self.source), '-B', str(self.build), '-DSTICKSLIP_BUILD_DRIVER=OFF'], check=True)
+        built = self.run(['nice', 'cmake', '--build', str(self.build), '-j2'])
+        if built.returncode:
+            sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
         listed = json.loads(self.run(['ctest', '--test-dir', str(self.build), '--show-only=json-v1'], check=True).stdout)
         self.programs = {test['name']: pathlib.Path(test['command'][0]).name for test in listed['tests']
                          if test['command'][0].startswith(str(self.build / 'tests'))   # others are scripts
                          and (with_hosts or not re.search('abaqus|calculix|kratos|host|fork', test['name']))}
         self.targets = list(self.programs)
-        built = self.make()
-        if built.returncode:
-            sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
         self.times = {}
         for target in self.targets:
             begun = time.monotonic()

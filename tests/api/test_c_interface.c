@@ -81,6 +81,37 @@ static void a_batch_is_component_major(void)
           == FRICTION_NULL_POINTER);
 }
 
+/* Wherever the point stands: the lowest error, else snap-back, else ok; the same point by point and in a batch. */
+static void a_batch_returns_the_worst_status(void)
+{
+    static const double brittle[8] = {1, 1000, 100, .4, .2, 100, 0, 1e4};
+    static const struct { double du[3], slip; int status; } kinds[4] = {
+        {{-.1, .01, 0}, 0, FRICTION_OK}, {{-.1, .32, 0}, 0, FRICTION_SNAP_BACK},
+        {{-.1, NAN, 0}, 0, FRICTION_BAD_INCREMENT}, {{-.1, .01, 0}, -1, FRICTION_BAD_STATE}};
+    static const int cases[7][4] = {{0, 0, 0, FRICTION_OK}, {1, 0, 0, FRICTION_SNAP_BACK}, {0, 0, 1, FRICTION_SNAP_BACK},
+                                    {2, 3, 1, FRICTION_BAD_STATE}, {3, 2, 0, FRICTION_BAD_STATE},
+                                    {1, 0, 2, FRICTION_BAD_INCREMENT}, {0, 3, 2, FRICTION_BAD_STATE}};
+    double du[9], statev[24], points_du[9], points_statev[24], traction[9], tangent[27];
+    int status[3], i, j, k;
+
+    for (k = 0; k < 7; k++) {
+        memset(statev, 0, sizeof statev);
+        memset(points_statev, 0, sizeof points_statev);
+        for (i = 0; i < 3; i++) {
+            for (j = 0; j < 3; j++)
+                du[j * 3 + i] = points_du[i * 3 + j] = kinds[cases[k][i]].du[j];
+            statev[6 * 3 + i] = points_statev[i * 8 + 6] = kinds[cases[k][i]].slip;
+        }
+        CHECK(friction_update_batch(3, 3, du, 0, 8, brittle, 8, statev, traction, tangent, status) == cases[k][3]);
+        for (i = 0; i < 3; i++)
+            CHECK(status[i] == kinds[cases[k][i]].status);
+        CHECK(friction_update_points(3, 3, points_du, 0, 8, brittle, 8, points_statev, traction, tangent, status)
+              == cases[k][3]);
+        for (i = 0; i < 3; i++)
+            CHECK(status[i] == kinds[cases[k][i]].status);
+    }
+}
+
 static void points_are_in_c_order(void)
 {
     enum { n = 3, k = 1 };
@@ -263,6 +294,7 @@ int main(void)
     update_slides_on_the_subloading_surface();
     tangential_is_the_same_with_the_pressure_handed_in();
     a_batch_is_component_major();
+    a_batch_returns_the_worst_status();
     points_are_in_c_order();
     rates_are_what_the_update_tends_to();
     slip_rates_balance_the_traction();
