@@ -287,7 +287,7 @@ contains
                 if (eq%phase == phase_stick) then
                     call eq%inputs(t, v_drive, pressure, pressure_rate)
                     if (g(1) < -round_off * eq%strength(self%y, pressure)) return
-                    slides = would_slide(self, t)
+                    slides = would_slide(self, pressure, pressure_rate)
                     if (.not. (slides .and. (g(1) > 0.0_dp .or. .not. eq%rigid))) return
                     call self%switch(t, 1)
                 else if (g(1) > 0.0_dp .or. g(2) > 0.0_dp) then
@@ -299,24 +299,19 @@ contains
         end associate
     end subroutine settle
 
-    !> Would a contact at its strength slide on?
-    function would_slide(self, t) result(slides)
+    !> Does the traction of a contact that sticks at its strength grow faster than that?
+    pure function would_slide(self, pressure, pressure_rate) result(slides)
         class(continuous), intent(in) :: self
-        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: pressure, pressure_rate   !! [F/L^2], [F/L^2/T]
         logical :: slides
-        type(slider_equations) :: sliding
-        real(dp) :: dy(unknowns)
-        logical :: failed
+        real(dp) :: strength, growth
 
         slides = .true.
         if (self%equations%rigid) return
-        sliding = self%equations
-        sliding%phase = phase_slide
-        sliding%sense = sign(1.0_dp, self%y(elastic))
-        if (sliding%surface%tau_max < huge(1.0_dp)) sliding%phase = phase_capped
-        if (sliding%surface%traits%onset == onset_drops) sliding%phase = phase_capped
-        call sliding%rates(t, self%y, dy, failed)
-        slides = dy(slip) > 0.0_dp .or. failed
+        strength = self%equations%strength(self%y, pressure)
+        growth = 0.0_dp
+        if (strength < self%equations%surface%tau_max) growth = strength / pressure * pressure_rate
+        slides = self%equations%alpha * sign(1.0_dp, self%y(elastic)) * self%first(elastic) > growth
     end function would_slide
 
     !> Takes a step by the method in use.
