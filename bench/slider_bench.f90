@@ -3,6 +3,7 @@
 program slider_bench
     use, intrinsic :: iso_fortran_env, only : dp => real64, output_unit
     use explicit_slider, only : explicit_run, solve_explicitly
+    use loading_programme, only : programme
     use reference_problem, only : last_peak, problem
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
@@ -23,6 +24,7 @@ program slider_bench
     open (newunit=text, file=trim(directory) // '/slider.txt', status='replace', action='write')
     places = [output_unit, text]
     !$ call omp_set_num_threads(1)
+    call show_rate_and_state()
     call compare(0.01_dp)
     call compare(0.0_dp)
     call show_orders()
@@ -87,6 +89,75 @@ contains
         call row(name, explicit%steps, seconds, error)
         if (error <= allowed) fastest = min(fastest, seconds)
     end subroutine measure_explicitly
+
+    !> Earthquake cycles: without inertia but with radiation damping, and with inertia. The last
+    !> periods of Rodas4 at rtol 1e-10, which a Radau method confirms (docs/validation.md).
+    subroutine show_rate_and_state()
+        type(settings) :: quasi_dynamic, inertial
+
+        allocate (quasi_dynamic%props(10), source=[4.0_dp, 1.0e6_dp, 1.0e6_dp, 0.01_dp, 0.014_dp, &
+            1.0e-3_dp, 1.0e-6_dp, 0.6_dp, 0.0_dp, 1.0e6_dp])
+        quasi_dynamic%stiffness = 41.23_dp
+        quasi_dynamic%damping = 5.0_dp
+        quasi_dynamic%drive = steady_drive(1.0e-9_dp, 100.0_dp)
+        quasi_dynamic%t_end = 3.15e9_dp
+        allocate (inertial%props(8), source=[4.0_dp, 1.0e10_dp, 1.0e10_dp, 0.0144_dp, 0.02312_dp, &
+            0.09_dp, 1.0e-3_dp, 0.64395_dp])
+        inertial%mass = 60.0e6_dp
+        inertial%stiffness = 1.0e6_dp
+        inertial%drive = steady_drive(1.0e-3_dp, 20.0e6_dp)
+        inertial%t_end = 4.0e4_dp
+        call say('')
+        call say('rate-and-state cycles' // repeat(' ', 23) // 'steps    CPU s   relative error of ' &
+            // 'the last period')
+        call show_cycles('without inertia, rtol 3e-6', quasi_dynamic, 3.0e-6_dp, 2.8426183e8_dp, &
+            5000, 1.7e-6_dp)
+        call show_cycles('inertia, rtol 1e-5', inertial, 1.0e-5_dp, 3778.6234_dp, 15000, &
+            0.05_dp / 3778.6_dp)
+    end subroutine show_rate_and_state
+
+    subroutine show_cycles(name, problem, rtol, period, most_steps, largest_error)
+        character(len=*), intent(in) :: name
+        type(settings), intent(in) :: problem
+        real(dp), intent(in) :: rtol, period   !! the latter exact [T]
+        integer, intent(in) :: most_steps      !! the bars
+        real(dp), intent(in) :: largest_error
+        type(settings) :: run
+        type(simulation_run) :: live
+        type(observer_slot) :: nobody(0)
+        type(outcome) :: result
+        real(dp) :: begun, ended, error
+        integer :: n
+
+        run = problem
+        run%initial%any_given = .true.
+        run%initial%has_r = .false.
+        run%initial%mu = 0.6_dp
+        run%initial%r = 1.0_dp
+        run%adaptive = .true.
+        run%rtol = rtol
+        run%dt = 1.0e-6_dp * run%t_end
+        run%dt_max = run%t_end
+        call cpu_time(begun)
+        call start_run(run, live)
+        call simulate(live, nobody, result)
+        call cpu_time(ended)
+        n = size(result%onsets)
+        error = huge(error)
+        if (n > 2) error = abs((result%onsets(n) - result%onsets(n - 1)) / period - 1.0_dp)
+        call row(name, result%steps, ended - begun, error)
+        write (line, '(a, i6, a, es8.1, 2x, a)') 'bar: steps <= ', most_steps, ' at an error <= ', &
+            largest_error, verdict(result%steps <= most_steps .and. error <= largest_error)
+        call say(trim(line))
+    end subroutine show_cycles
+
+    pure function steady_drive(velocity, normal) result(drive)
+        real(dp), intent(in) :: velocity, normal   !! [L/T], [F/L^2]
+        type(programme) :: drive
+
+        drive = programme(start=[0.0_dp], travel=[0.0_dp], velocity=[velocity], &
+            acceleration=[0.0_dp], normal=[normal], normal_rate=[0.0_dp])
+    end function steady_drive
 
     !> CPU time of a block and step in chains of growing length: the difference of a long and a
     !> short run, so that the start does not count.
