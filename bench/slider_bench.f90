@@ -108,8 +108,8 @@ contains
         inertial%drive = steady_drive(1.0e-3_dp, 20.0e6_dp)
         inertial%t_end = 4.0e4_dp
         call say('')
-        call say('rate-and-state cycles' // repeat(' ', 23) // 'steps    CPU s   relative error of ' &
-            // 'the last period')
+        call say('rate-and-state cycles' // repeat(' ', 23) // 'steps    CPU s   relative error ' &
+            // 'of the last period')
         call show_cycles('without inertia, rtol 3e-6', quasi_dynamic, 3.0e-6_dp, 2.8426183e8_dp, &
             5000, 1.7e-6_dp)
         call show_cycles('inertia, rtol 1e-5', inertial, 1.0e-5_dp, 3778.6234_dp, 15000, &
