@@ -68,7 +68,7 @@ contains
         end do
         if (.not. self%draws_contours) return
         call self%contours%create(self%base // '_contours.csv')
-        call self%contours%write_line('time,event,z,slip')
+        call self%contours%write_line('time,event,z,slip,log10_slip_rate')
     end subroutine create
 
     !> The column of the law's internal variable.
@@ -195,7 +195,7 @@ contains
         type(fault_state), intent(in) :: state
         type(event_watch), intent(in) :: watch
         logical, intent(in) :: ended
-        real(dp) :: dt, u, own(here%n), slip(here%plan%nz)
+        real(dp) :: dt, u, own(here%n), slip(here%plan%nz), rate(here%plan%nz)
         integer :: stride, k
 
         dt = state%time - self%time_before
@@ -208,9 +208,11 @@ contains
                 - self%slip_before) + dt * u * (1.0_dp - u) * ((1.0_dp - u) * self%rate_before &
                 - u * state%rate)
             call together%gather(own, here%part%counts, slip)
+            own = (1.0_dp - u) * log10_of(self%rate_before) + u * log10_of(state%rate)
+            call together%gather(own, here%part%counts, rate)
             do k = 1, here%plan%nz, stride
                 if (self%writes) call self%contours%write_line(row_of([self%next_contour, &
-                    merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k)]))
+                    merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k), rate(k)]))
             end do
             if (self%writes) call self%contours%write_line('')
             self%next_contour = self%next_contour + here%plan%contours(merge(2, 1, watch%on))

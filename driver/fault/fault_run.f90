@@ -3,6 +3,7 @@ module fault_run
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64
     use fault_checkpoint, only : read_checkpoint, write_checkpoint
     use fault_events, only : event_watch
+    use fault_fields, only : field_file
     use fault_explicit, only : explicit_steps
     use fault_implicit, only : implicit_steps
     use fault_problem, only : fault, fault_state
@@ -27,6 +28,7 @@ module fault_run
         class(stepper), allocatable :: steps
         type(event_watch) :: watch
         type(recorder) :: records
+        type(field_file) :: fields
         character(len=:), allocatable :: base    !! of the files' names, with the directory
     end type live_run
 
@@ -68,12 +70,19 @@ contains
             call live%records%create(live%here)
             live%watch%largest_rate = together%largest(maxval(live%state%rate))
             call live%records%begin(live%here, together, live%state, live%watch)
+            if (plan%fields > 0) then
+                call live%fields%create(together, base)
+                call live%fields%write_record(live%here, together, live%state)
+            end if
         end if
         call go(live, together, quiet, problem)
         call live%records%finish()
         if (together%any_of(live%records%failed()) .and. len(problem) == 0) then
             problem = 'cannot write to ' // base // '_*.csv (disk full?)'
         end if
+        if (live%fields%failed .and. len(problem) == 0) problem = 'cannot write to ' // base &
+            // '_fields.bin (disk full?)'
+        if (plan%fields > 0) call live%fields%describe(live%here, together)
         most_slip = together%largest(maxval(live%state%slip))
         if (together%rank == 0 .and. len(problem) == 0) then
             call remove_file(base // '.checkpoint')
@@ -106,6 +115,10 @@ contains
                 end if
                 call live%watch%see(live%here, together, records%time_before, state, ended)
                 call records%see(live%here, together, state, live%watch, ended)
+                if (plan%fields > 0) then
+                    if (mod(state%steps, int(plan%fields, int64)) == 0) call &
+                        live%fields%write_record(live%here, together, state)
+                end if
                 call bar%show(state%time / plan%t_end)
                 if (mod(state%steps, int(steps_between_looks, int64)) == 0) call look(live, &
                     together, last, problem)
@@ -147,6 +160,7 @@ contains
         end if
         associate (state => live%state, watch => live%watch, event => live%watch%event)
             header = 0.0_dp
+            header(14) = live%fields%records
             header(:13) = [state%time, state%dt, real(state%steps, dp), real(state%rejected, dp), &
                 merge(1.0_dp, 0.0_dp, watch%on), real(watch%events, dp), watch%largest_rate, &
                 event%onset, event%peak_rate, real(event%first_cell, dp), &
@@ -194,8 +208,10 @@ contains
             watch%slip_before = columns(:, n + 1)
             watch%took_part = columns(:, n + 2)
         end associate
+        if (live%here%plan%fields > 0) call live%fields%go_on(live%here, together, live%base, &
+            int(header(14)))
         call live%records%go_on(header(own_numbers + 1:))
-        failed = together%any_of(live%records%failed())
+        failed = together%any_of(live%records%failed()) .or. live%fields%failed
         if (failed) problem = 'the files ' // live%base &
             // '_*.csv are not those that the checkpoint goes on with'
     end subroutine take_checkpoint

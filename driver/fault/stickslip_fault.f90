@@ -2,6 +2,7 @@
 !> nothing else depends on FFTW, MPI or HDF5.
 program stickslip_fault
     use, intrinsic :: iso_fortran_env, only : error_unit
+    use fault_picture, only : draw_fault
     use fault_reader, only : read_fault_plan
     use fault_run, only : run_fault
     use fault_settings, only : fault_plan
@@ -15,7 +16,7 @@ program stickslip_fault
     type(fault_plan) :: plan
     type(namelist_file) :: file
     character(len=:), allocatable :: input, directory, stem, problem
-    logical :: resume, quiet
+    logical :: resume, quiet, plot
 
     !$ call omp_set_num_threads(1)   ! processes share the work, not threads
     call hold_output()
@@ -24,6 +25,7 @@ program stickslip_fault
     stem = argument(3)
     resume = index(argument(4), 'resume') > 0
     quiet = index(argument(4), 'quiet') > 0
+    plot = index(argument(4), 'no-plot') == 0
     if (lacks_mpi()) then
         write (error_unit, '(a)') 'stickslip: this fault engine was built without MPI, and runs ' &
             // 'on one process (Debian: libopenmpi-dev libfftw3-mpi-dev, then build again)'
@@ -51,6 +53,10 @@ program stickslip_fault
     if (len(problem) > 0) then
         if (together%rank == 0) write (error_unit, '(4a)') 'stickslip: ', input, ': ', problem
         call finish(exit_failed)
+    end if
+    if (plot .and. together%rank == 0) then
+        call draw_fault(plan, directory, stem, problem)
+        if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end if
     call finish(exit_done)
 

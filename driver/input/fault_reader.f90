@@ -13,6 +13,7 @@ module fault_reader
     use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use namelist_parser, only : namelist_entry, value_token
+    use unit_reader, only : read_units
     implicit none
     private
 
@@ -52,6 +53,7 @@ contains
         call read_initial(file, plan)
         call read_times(file, plan)
         call read_output(file, plan)
+        call read_units(file, plan%units)
         plan%fingerprint = fingerprint_of(file%listing(), plan)
         call file%refuse_unknown()
     end subroutine read_fault_plan

@@ -1,6 +1,7 @@
 !> What a run of the planar fault is told to do (docs/fault.md).
 module fault_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use unit_names, only : units
     implicit none
     private
 
@@ -38,6 +39,7 @@ module fault_settings
                                                     !! during events; 0: none [T]
         integer :: interval = 1                     !! steps between two rows
         integer :: fields = 0                       !! steps between two frames of fields; 0: none
+        type(units) :: units                        !! names for pictures
         real(dp) :: checkpoint = 60.0_dp            !! clock between two checkpoints [s]
         integer(int64) :: fingerprint = 0           !! another one for any input with other results
     contains

@@ -1,4 +1,5 @@
 """The verb fault: a benchmark, restarts, any number of processes, input that is wrong."""
+import array
 import csv
 import filecmp
 import os
@@ -9,6 +10,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM = os.environ['STICKSLIP']
 ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault')
@@ -31,7 +33,7 @@ PLANE = """
        wave_speed = 3464, plate_rate = 1e-9, normal_traction = 50e6, initial = 'file', initial_file = 'start.csv' /
 &friction law = 'rate_and_state', a = 0.007, b = 0.013, d_c = 0.04, v0 = 1e-6, f0 = 0.6 /
 &time t_end = 3e8, rtol = 1e-3 /
-&output stations = 20e3, stations_x = 5e3, checkpoint = 0 /
+&output stations = 20e3, stations_x = 5e3, checkpoint = 0, fields = 5 /
 """
 SUBLOADING = """
 &fault geometry = 'antiplane_half', width = 40e3, nz = 96, shear_modulus = 32.04e9, wave_speed = 3464,
@@ -61,7 +63,7 @@ class FaultTest(unittest.TestCase):
 
     def command(self, processes, *arguments):
         launcher = [MPIRUN, '-n', str(processes)] if processes > 1 else []
-        return launcher + [PROGRAM, 'fault', *arguments]
+        return launcher + [PROGRAM, 'fault', '--no-plot', *arguments]
 
     def run_fault(self, *arguments, processes=1, expect=0):
         done = subprocess.run(self.command(processes, *arguments), cwd=self.place, env=ENVIRONMENT,
@@ -100,7 +102,7 @@ class FaultTest(unittest.TestCase):
 class Benchmark(FaultTest):
     def test_bp1_has_the_events_of_other_codes(self):
         """78 m cells: the onsets are those of the community's codes at 25 m within a tenth of a year."""
-        self.run_fault(str(INPUTS / 'fault_bp1.nml'), '--output', 'bp1', '--quiet', '--no-plot')
+        self.run_fault(str(INPUTS / 'fault_bp1.nml'), '--output', 'bp1', '--quiet')
         events = self.events('bp1', 'fault_bp1')
         self.assertEqual(len(events), 3)
         for event, onset in zip(events, (196.49, 272.16, 350.02)):
@@ -169,11 +171,37 @@ class Restart(FaultTest):
         self.assertIn('no checkpoint', self.run_fault(name, '--resume', expect=1).stderr)
 
 
+class Output(FaultTest):
+    def test_fields_hold_what_the_station_does(self):
+        self.run_fault(self.write(PLANE), '--quiet')
+        numbers = array.array('d', (self.place / 'case_out' / 'case_fields.bin').read_bytes())
+        record = 1 + 4 * 30 * 21
+        self.assertEqual(len(numbers) % record, 0)
+        with open(self.place / 'case_out' / 'case_station_1.csv', newline='') as file:
+            rows = {float(row['time']): row for row in csv.DictReader(file)}
+        cell = 17 + 30 * 10   # x = 5 km, z = 20 km
+        self.assertGreater(len(numbers) // record, 3)
+        for first in range(0, len(numbers), record):
+            row = rows[numbers[first]]
+            self.assertEqual(float(row['slip']), numbers[first + 1 + 30 * 21 + cell])
+            self.assertEqual(float(row['traction']), numbers[first + 1 + 2 * 30 * 21 + cell])
+        described = xml.etree.ElementTree.parse(self.place / 'case_out' / 'case_fields.xdmf')
+        self.assertEqual(len(described.findall('.//Time')), len(numbers) // record)
+        last = described.findall('.//DataItem[@Format="Binary"]')[-1]
+        self.assertEqual(int(last.get('Seek')), 8 * (len(numbers) - 30 * 21))
+
+    @unittest.skipUnless(shutil.which('gnuplot'), 'no gnuplot')
+    def test_picture_is_drawn(self):
+        text = SMALL.replace('1.0e10', '1.0e8')
+        subprocess.run([PROGRAM, 'fault', self.write(text), '--quiet'], cwd=self.place, check=True)
+        self.assertGreater((self.place / 'case_out' / 'case.png').stat().st_size, 5000)
+
+
 class Laws(FaultTest):
     def test_subloading_friction_gives_earthquakes(self):
         """The first one after 454 years, as an independent trial code has it with other steps (docs/fault.md)."""
         name = self.write(SUBLOADING)
-        self.run_fault(name, '--output', 'whole', '--quiet', '--no-plot')
+        self.run_fault(name, '--output', 'whole', '--quiet')
         events = self.events('whole', 'case')
         self.assertEqual(len(events), 1)
         self.assertAlmostEqual(float(events[0]['onset']) / YEAR, 454, delta=4)
