@@ -98,13 +98,14 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / 'hysteresis.png').exists())
 
     def test_everything_a_host_needs_is_installed(self):
-        for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'libstickslip_mgis.so', 'friction.h', 'friction_mod.mod',
+        for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'libstickslip_mgis.so', 'friction.h',
+                     'stickslip_abaqus_standard_routines.f90', 'stickslip_abaqus_explicit_routines.f90', 'friction_mod.mod',
                      'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90', 'stickslip.pc', 'stickslip-fortran.pc',
                      'friction_interface.f90'):
             self.assertEqual(len(list(self.prefix.rglob(name))), 1, name)
 
     def test_the_single_files_for_abaqus_compile_alone(self):
-        for name in ('standard', 'explicit'):
+        for name in ('standard', 'explicit', 'standard_routines', 'explicit_routines'):
             source = next(self.prefix.rglob(f'stickslip_abaqus_{name}.f90'))
             alone = self.folder / name
             alone.mkdir()
@@ -115,6 +116,48 @@ class Installed(unittest.TestCase):
             for options in kinds:
                 self.assertEqual(self.call(FORTRAN, '-c', *options, source.name, cwd=alone), '')
 
+    def test_a_job_has_a_umat_of_its_own_beside_friction(self):
+        alone = self.folder / 'own'
+        alone.mkdir()
+        shutil.copy(next(self.prefix.rglob('stickslip_abaqus_standard_routines.f90')), alone / 'routines.f90')
+        shutil.copy(EXAMPLES / 'abaqus/own_umat.f', alone)
+        (alone / 'host.f90').write_text(HOST)
+        self.call(FORTRAN, '-c', 'routines.f90', cwd=alone)
+        defined = self.call('nm', '--defined-only', 'routines.o', cwd=alone).split()
+        for name in ('fric', 'uinter', 'umat'):
+            self.assertIn(f'stickslip_{name}_', defined)
+            self.assertNotIn(f'{name}_', defined)
+        self.call(FORTRAN, 'host.f90', 'own_umat.f', 'routines.o', '-o', 'host', cwd=alone)
+        own, friction = (float(word) for word in self.call(alone / 'host').split())
+        point = friction_point.FrictionPoint([2, 1000, 800, 0.4])
+        self.assertAlmostEqual(friction, point.update((-0.003, 0.01, 0.0), 0.1)[1], delta=1e-12)
+        self.assertAlmostEqual(own, 0.5 * 70 * 0.1, delta=1e-12)
+
+
+# calls UMAT for an elastic material and for a layer of friction, and prints a shear stress of each
+HOST = """program host
+    implicit none
+    integer, parameter :: dp = kind(1.0d0)
+    real(dp) :: stress(6), statev(8), ddsdde(6, 6), other(36), strain(6), pnewdt
+    integer :: step(4), k
+    real(dp), parameter :: layer(6) = [0.1_dp, 1.0_dp, 2.0_dp, 1000.0_dp, 800.0_dp, 0.4_dp], elastic(6) = 70.0_dp
+    character(len=80) :: name
+    step = 0
+    other = 0.0_dp
+    strain = [0.0_dp, 0.0_dp, -0.03_dp, 0.0_dp, 0.1_dp, 0.0_dp]
+    do k = 1, 2
+        stress = 0.0_dp
+        statev = 0.0_dp
+        name = merge('ELASTIC ', 'FRICTION', k == 1)
+        call umat(stress, statev, ddsdde, other(1), other(2), other(3), other(4), other, other, other(5), other, strain, &
+            other, 0.1_dp, 0.0_dp, 0.0_dp, other, other, name, 3, 3, 6, 8, merge(elastic, layer, k == 1), 6, other, &
+            reshape([1, 0, 0, 0, 1, 0, 0, 0, 1] * 1.0_dp, [3, 3]), pnewdt, 1.0_dp, other, other, 1, 1, 1, 1, step, 1)
+        print *, stress(5)
+    end do
+end program host
+subroutine stdb_abqerr()
+end subroutine stdb_abqerr
+"""
 
 if __name__ == '__main__':
     unittest.main()

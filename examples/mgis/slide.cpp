@@ -1,6 +1,6 @@
 // Presses a contact point, slides it forth and back, and prints the friction: through MGIS, as any MFront behaviour.
 //
-//     c++ -std=c++20 slide.cpp $(mgis-config --compiler-flags --libs) -o slide && ./slide libstickslip_mgis.so
+//     c++ -std=c++20 slide.cpp -lMFrontGenericInterface -o slide && ./slide libstickslip_mgis.so
 #include <cstdio>
 #include <MGIS/Behaviour/Behaviour.hxx>
 #include <MGIS/Behaviour/BehaviourData.hxx>
