@@ -17,19 +17,23 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 import friction_point  # noqa: E402
+import layer_deck  # noqa: E402
 
 EXAMPLES = HERE.parents[1] / 'examples/calculix'
 CCX = os.environ.get('CCX', '')
 HEADING = re.compile(r' (\S.*?) (?:\(|for set).*time +(\S+)')
 
 
+NUMBER = r'-?\d+(?:\.\d*)?(?:E[-+]\d+)?'
+
+
 MATERIAL = re.compile(r'\*USER MATERIAL.*?(?=\*DEPVAR)', re.DOTALL)
 LAYER = [0.1, 1.0]   # thickness and in-plane modulus in the decks
 
 
-def material(constants):
+def material(constants, layer=None):
     """The lines of a user material: eight constants a line, and behind them, on a new line after eight, a temperature."""
-    words = [repr(float(constant)) for constant in LAYER + constants]
+    words = [repr(float(constant)) for constant in (layer or LAYER) + constants]
     lines = [', '.join(words[at:at + 8]) for at in range(0, len(words), 8)]
     if len(words) % 8 == 0:
         lines.append('0.')
@@ -39,7 +43,12 @@ def material(constants):
 def run_deck(name, folder, friction, change=lambda text: text):
     """Runs a deck of examples/calculix under a law; gives its tables [(title, time, rows)]."""
     deck = (EXAMPLES / f'{name}.inp').read_text()
-    (folder / f'{name}.inp').write_text(change(MATERIAL.sub(material(friction), deck)))
+    return run_text(change(MATERIAL.sub(material(friction), deck)), folder, name)
+
+
+def run_text(deck, folder, name):
+    """Runs a deck; gives its tables [(title, time, rows)]."""
+    (folder / f'{name}.inp').write_text(deck)
     library = pathlib.Path(os.environ['STICKSLIP_CALCULIX']).parent
     result = subprocess.run([CCX, name], cwd=folder, text=True, capture_output=True, check=False,
                             env={**os.environ, 'LD_LIBRARY_PATH': str(library), 'OMP_NUM_THREADS': '1'})
@@ -51,7 +60,7 @@ def run_deck(name, folder, friction, change=lambda text: text):
         if heading:
             tables.append((heading.group(1), float(heading.group(2)), []))
         elif line.strip():
-            tables[-1][2].append([float(word) for word in line.split()])
+            tables[-1][2].append([float(word) for word in re.findall(NUMBER, line)])
     return tables
 
 
@@ -118,6 +127,65 @@ class CalculiX(unittest.TestCase):
         self.assertGreater(slipping // 8, 20)
         if name != 'rate-and-state':   # which creeps under any load
             self.assertGreater(sticking // 8, 5)
+
+    def test_many_elements_follow_friction_update_under_every_law(self):
+        """10 x 10 elements between two elastic blocks, pressed unevenly, sheared, reversed."""
+        for name in ('subloading', 'rate-and-state'):
+            with self.subTest(law=name):
+                friction = friction_point.LAWS[name]
+                deck = layer_deck.deck(10, LAYER, material(friction), layer_deck.PRESSED + layer_deck.SHEARED)
+                tables = run_text(deck, self.folder, 'many')
+                worst, slipping = self.replay(tables, friction)
+                counts = iterations(self.folder, 'many')
+                print(f'\n  CalculiX, 100 elements in the layer, {name}: {len(counts)} increments, iterations at most '
+                      f'{max(counts)}, mean {sum(counts) / len(counts):.2f}; worst difference {worst:.1e} of the pressure; '
+                      f'slip in {slipping:.0%}')
+                self.assertLess(worst, 1e-5)
+                self.assertGreater(slipping, 0.2)
+
+    def replay(self, tables, friction):
+        """Worst difference of the stress from friction_update along the strains, and the share of points that slip."""
+        points, time, worst, slips, count, pressure = {}, 0.0, 0.0, 0, 0, 0.0
+        for at in range(0, len(tables), 3):
+            stresses, strains, states = (table[2] for table in tables[at:at + 3])
+            dt, time = tables[at][1] - time, tables[at][1]
+            for stress, strain, state in zip(stresses, strains, states):
+                key = (int(stress[0]), int(stress[1]))
+                point, old = points.setdefault(key, (friction_point.FrictionPoint(friction), [0.0] * 3))
+                gap = [LAYER[0] * strain[4], 2 * LAYER[0] * strain[6], 2 * LAYER[0] * strain[7]]
+                traction = point.update([new - before for new, before in zip(gap, old)], dt)
+                points[key] = (point, gap)
+                pressure = max(pressure, abs(traction[0]))
+                worst = max(worst, *(abs(a - b) for a, b in zip([stress[4], stress[6], stress[7]], traction)))
+                slips += state[2] == 2
+                count += 1
+        return worst / pressure, slips / count
+
+    def test_a_long_slip_under_nlgeom_keeps_its_pressure(self):
+        """0.05 mm over layers of 0.1 and of 1 mm: the forces of small displacements, to what else NLGEOM changes."""
+        for thickness in (0.1, 1.0):
+            forces = {}
+            for option in ('', ', NLGEOM'):
+                layer = [thickness, 1.0]
+                deck = layer_deck.deck(2, layer, material([2, 1000, 800, 0.4], layer),
+                                       layer_deck.dragged(option, 0.05), length=2.0, height=1.0, young=1e5, poisson=0.0)
+                forces[option] = run_text(deck, self.folder, 'slide')[-1][2][-1][-3:]
+            print(f'\n  slip of 0.05 mm over a layer of {thickness} mm: shear and normal force {forces[""][0]:.4f}, '
+                  f'{forces[""][2]:.4f} N; under NLGEOM {forces[", NLGEOM"][0]:.4f}, {forces[", NLGEOM"][2]:.4f} N')
+            self.assertAlmostEqual(forces[''][0], 4.706, delta=1e-3)
+            self.assertAlmostEqual(forces[''][2], -11.765, delta=1e-3)
+            for found, expected in zip(forces[', NLGEOM'], forces['']):
+                self.assertAlmostEqual(found, expected, delta=1e-3 * 11.765)
+
+    def test_orthotropic_friction_converges_under_uneven_pressing(self):
+        for name, constants in (('associated, ratio 0.9', [0, 0.9, 0]), ('associated, ratio 0.5', [0, 0.5, 0]),
+                                ('radial, ratio 0.5', [0, 0.5, 1]), ('associated, ratio 2', [0, 2, 0])):
+            with self.subTest(law=name):
+                run_text(layer_deck.deck(4, LAYER, material([2, 1000, 800, 0.4, *constants]), layer_deck.PRESSED), self.folder,
+                         'pressed')
+                counts = iterations(self.folder, 'pressed')
+                print(f'\n  orthotropic Coulomb friction, {name}: {len(counts)} increments, iterations at most {max(counts)}')
+                self.assertEqual(len(counts), 10)   # none was cut
 
     def test_slider_sticks_and_slips_like_the_program(self):
         tables = run_deck('slider', self.folder, [1, 1000, 1000, 0.4, 0.2, 10, 10, 1000])
