@@ -54,7 +54,7 @@ contains
         call read_times(file, plan)
         call read_output(file, plan)
         call read_units(file, plan%units)
-        plan%fingerprint = fingerprint_of(file%listing(), plan)
+        plan%fingerprint = fingerprint_of(file%listing(without=''), plan)
         call file%refuse_unknown()
     end subroutine read_fault_plan
 

@@ -674,24 +674,43 @@ contains
     end subroutine remove
 
     !> What the file says, without its comments and its layout: one line an assignment.
-    pure function listing(self) result(text)
+    function listing(self, without) result(text)
         class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: without    !! a group that is left out, or ''
         character(len=:), allocatable :: text
-        integer :: i, j
+        character(len=:), allocatable :: head
+        integer :: length, pass, i, j
 
-        text = ''
-        do i = 1, size(self%entries)
-            associate (entry => self%entries(i))
-                text = text // '&' // entry%group // ' ' // entry%key
-                if (entry%subscripted) text = text // '(' // whole_text(entry%first) // '::' &
-                    // whole_text(entry%stride) // ')'
-                text = text // ' ='
-                do j = 1, size(entry%values)
-                    text = text // ' ' // quoted(entry%values(j))
-                end do
-                text = text // new_line('a')
-            end associate
+        allocate (character(len=0) :: text)
+        do pass = 1, 2   ! the first one measures
+            length = 0
+            do i = 1, size(self%entries)
+                associate (entry => self%entries(i))
+                    if (entry%group == without) cycle
+                    head = '&' // entry%group // ' ' // entry%key
+                    if (entry%subscripted) head = head // '(' // whole_text(entry%first) &
+                        // '::' // whole_text(entry%stride) // ')'
+                    call put(head // ' =')
+                    do j = 1, size(entry%values)
+                        call put(' ' // quoted(entry%values(j)))
+                    end do
+                    call put(new_line('a'))
+                end associate
+            end do
+            if (pass == 2) exit
+            deallocate (text)
+            allocate (character(len=length) :: text)
         end do
+
+    contains
+
+        subroutine put(word)
+            character(len=*), intent(in) :: word
+
+            if (pass == 2) text(length + 1:length + len(word)) = word
+            length = length + len(word)
+        end subroutine put
+
     end function listing
 
     !> Notes a fault in a line; line 0 is the file as a whole.

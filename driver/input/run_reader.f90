@@ -59,7 +59,7 @@ contains
             default=60.0_dp)
         call read_fields(file, run)
         call file%refuse_unknown()
-        run%fingerprint = fingerprint_of(file%listing(), run%drive)
+        run%fingerprint = fingerprint_of(file%listing(without='sweep'), run%drive)
     end subroutine read_settings
 
     !> What counts as a slip event.

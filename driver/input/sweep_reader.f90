@@ -149,7 +149,7 @@ contains
             call file%remove(plan%axes(i)%group, plan%axes(i)%key)
             call file%remove('sweep', plan%axes(i)%source)
         end do
-        plan%input = file%listing()
+        plan%input = file%listing(without='')
     end subroutine list_common_input
 
 end module sweep_reader
