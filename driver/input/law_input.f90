@@ -35,9 +35,25 @@ contains
         do place = prop_law + 1, table%n
             call read_constant(file, table%of(place), place, props)
         end do
+        call point_to_other_laws(file)
         if (size(file%faults) == faults_before .and. file%has_group(group)) call check(file, &
             table, props)
     end subroutine read_friction
+
+    !> A constant that is given although it belongs to another law is told so.
+    subroutine point_to_other_laws(file)
+        type(namelist_file), intent(inout) :: file
+        type(constant_table) :: table
+        integer :: law, place
+
+        do law = 1, friction_law_count
+            table = friction_constants(law)
+            do place = prop_law + 1, table%n
+                call file%belongs_elsewhere(group, trim(table%of(place)%name), &
+                    "it belongs to the law '" // trim(friction_law_name(law)) // "'")
+            end do
+        end do
+    end subroutine point_to_other_laws
 
     subroutine read_constant(file, this, place, props)
         type(namelist_file), intent(inout) :: file

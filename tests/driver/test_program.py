@@ -287,8 +287,11 @@ class Laws(Program):
 
     def test_constants_of_another_law_are_unknown_keys(self):
         for law in LAWS:
-            self.refused(law_namelist(law, xi='1'), '&friction xi: unknown key')
-        self.refused(namelist({('friction', 'mu'): '0.3'}), '&friction mu: unknown key')
+            self.refused(law_namelist(law, xi='1'), "&friction xi: unknown key; it belongs to the law 'subloading'")
+        self.refused(namelist({('friction', 'mu'): '0.3', ('friction', 'evolution'): "'slip'"}),
+                     "&friction mu: unknown key; it belongs to the law 'coulomb'",
+                     "&friction evolution: unknown key; it belongs to the law 'rate_and_state'")
+        self.refused(namelist({('friction', 'kapa'): '0.3'}), "&friction kapa: unknown key; did you mean 'kappa'?")
 
     def test_constants_left_out_or_out_of_range_are_all_named(self):
         for law, constants in LAWS.items():
