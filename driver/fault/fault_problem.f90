@@ -46,6 +46,7 @@ contains
         class(fault), intent(inout) :: self
         type(fault_plan), intent(in) :: plan
         type(team), intent(inout) :: together
+        real(dp), parameter :: least_weakening = 1.0e-100_dp   !! [F/L^3]
         type(sliding_surface) :: surface
         integer :: n_props, i, k, cell, status
         real(dp), allocatable :: values(:)
@@ -67,7 +68,7 @@ contains
                 call read_surface(values(:n_props), surface, status)
                 self%slip_scale(cell) = surface%traits%slip_scale
                 self%cohesive_length = min(self%cohesive_length, plan%shear_modulus &
-                    / max(surface%traits%weakening * self%pressure(cell), tiny(1.0_dp)))
+                    / max(surface%traits%weakening * self%pressure(cell), least_weakening))
             end do
         end do
         self%cohesive_length = -together%largest(-self%cohesive_length)
