@@ -37,8 +37,10 @@ class Target:
     near: float                          #: half width of the window around a drop [T]
 
     def errors(self, floor: float = FLOOR) -> np.ndarray:
-        """Standard deviations of the features, with a relative error of the model."""
-        return np.hypot(self.noise, floor * self.scale)
+        """Standard deviations of the features, with a relative error of the model. The times of events are by far the
+        sharpest of them and make the misfit's valleys narrow: a large error counts the more for them."""
+        times = np.array(self.names) == 'event times'
+        return np.hypot(self.noise, floor * self.scale * np.where(times, (floor / FLOOR)**0.9, 1.0))
 
     def of_simulation(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
         """The features of a simulation; None where it shows too few events."""
@@ -137,9 +139,9 @@ def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str,
     around = values[times:times + NEAR.size]
     amplitude = np.ptp(around)
     slope = np.abs(np.gradient(around, target.near * NEAR))
-    timing = max(noise / max(slope.max(), 1e-300), 0.1 * target.analysis.step)   # of the middle of one fall
+    timing = max(noise / max(slope.max(), 1e-300), 0.05 * target.analysis.step)   # of the middle of one fall
     level = noise / np.sqrt(events)
-    parts = [('event times', np.full(times, timing), 0.1 * np.abs(values[:times])),
+    parts = [('event times', np.full(times, timing), 0.05 * np.abs(values[:times])),
              ('drop', np.hypot(level, slope * timing / np.sqrt(events)), np.full(NEAR.size, amplitude)),
              ('cycle', np.full(BETWEEN.size, level), np.full(BETWEEN.size, amplitude))]
     if target.first_load > 0.0:

@@ -15,7 +15,7 @@ from . import _namelist
 from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians
 from ._records import Analysis, Record, analyse
 from ._run import spring_force
-from ._search import Constant, Journal, Limits, Problem, Simulate, replicas, search, set_times
+from ._search import Constant, Journal, Limits, Problem, Simulate, along_valley, replicas, search, set_times
 
 NORMAL = 1.959964       # standard deviations of a 95 % interval
 UNDETERMINED = 0.2      # standard deviation of a constant's logarithm from which on the records do not determine it
@@ -111,8 +111,8 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
 
     records: one or several; each may change the input for itself, above all its drive.
     input: a namelist (name of the file, or its text) or a dict of groups as `run` takes them. Constants that are not
-        free keep its values. With `rtol` in its group ``&time`` the steps are adaptive; else they are fixed, short
-        enough for the slip event, and the subloading law is integrated by ``scheme = 'exact_rate'``.
+        free keep its values. Steps are adaptive, in continuous time, whatever its group ``&time`` says; an `rtol` above
+        1e-6 there is taken.
     free: names of the constants to find: keys of ``&friction``, or others as 'slider.damping'.
     bounds: a factor about the values of the input, or lower and upper bounds by name, where the input need not have a
         value; all above 0.
@@ -195,8 +195,8 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     slope, bent = problem.jacobian(candidate)
     misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
     inverse = np.linalg.pinv(slope, rcond=1e-9)
-    found = replicas(problem, candidate, REPLICAS)
-    covariance = np.cov(inverse @ found, ddof=0).reshape(2 * (candidate.size,))
+    covariance = np.cov(inverse @ replicas(problem, candidate, REPLICAS), ddof=0).reshape(2 * (candidate.size,))
+    covariance += along_valley(problem, candidate, slope)
     covariance += (inverse * _floors(problem.targets)**2) @ inverse.T
     freedom = misfit.size - candidate.size
     if freedom > 0:

@@ -24,15 +24,7 @@ LIMIT = 500.0           # misfits are bent to stay below
 NO_EVENTS = 300.0       # misfit of every feature where a simulation shows too few events
 
 
-@dataclasses.dataclass(frozen=True)
-class Accuracy:
-    """Of a simulation."""
-
-    steps: int    #: fixed ones, in the duration of a slip event
-    rtol: float   #: least of adaptive steps
-
-
-COARSE, FINE = Accuracy(30, 1e-4), Accuracy(100, 0.0)
+FINE, COARSE = 1e-6, 1e-4   # error in a step, part of the static friction force
 
 
 class Stopped(Exception):
@@ -65,6 +57,8 @@ class Problem:
     pool: concurrent.futures.Executor
     journal: Journal
     limits: Limits
+    #: What noise adds to the features on average: it blurs the mean cycle, and a peak is the largest of noisy samples.
+    shift: np.ndarray | float = 0.0
 
     @property
     def low(self) -> np.ndarray:
@@ -82,11 +76,11 @@ class Problem:
         return settings
 
     def run(self, candidate: np.ndarray, target: Target, end: float,
-            accuracy: Accuracy = FINE) -> tuple[np.ndarray, np.ndarray] | None:
+            rtol: float = FINE) -> tuple[np.ndarray, np.ndarray] | None:
         """Simulates up to a time."""
         self.limits.check()
         settings = self.settings(candidate, target)
-        set_times(settings, end, target.analysis.step / target.analysis.averaged, accuracy)
+        set_times(settings, end, target.analysis.step / target.analysis.averaged, rtol)
         return self.simulate(settings)
 
     def expected_end(self, target: Target, events: int) -> float:
@@ -122,7 +116,7 @@ class Problem:
         with a large one the search finds its way along narrow valleys, which the times of the events make."""
         wanted = np.concatenate([target.values for target in self.targets])
         errors = np.concatenate([target.errors(floor) for target in self.targets])
-        return np.where(np.isnan(features), NO_EVENTS, LIMIT * np.tanh((features - wanted) / errors / LIMIT))
+        return np.where(np.isnan(features), NO_EVENTS, LIMIT * np.tanh((features + self.shift - wanted) / errors / LIMIT))
 
     def coarse_misfit(self, candidate: np.ndarray) -> np.ndarray:
         """A few robust numbers of a short simulation against those of the records."""
@@ -175,30 +169,14 @@ class Problem:
         return ((np.array(ahead) - here) / steps[:, None]).T
 
 
-def set_times(settings: Settings, end: float, step: float, accuracy: Accuracy = FINE) -> None:
-    """Gives a run its end and rows at the record's samples. Steps are adaptive where the input says so by `rtol`; else
-    fixed and short against the slip event, with the subloading law integrated exactly for a constant slip rate:
-    backward Euler biases the constants."""
-    time, output = settings.setdefault('time', {}), settings.setdefault('output', {})
-    time['t_end'] = float(end)
-    for key in [key for key in output if key not in ('every', 'interval')]:
-        del output[key]
-    if 'rtol' in time:
-        time.pop('dt', None)
-        output.pop('interval', None)
-        time['rtol'] = max(time['rtol'], accuracy.rtol)
-        output['every'] = float(step)
-        return
-    slider = settings.get('slider', {})
-    longest = step
-    if slider.get('mass', 0.0) > 0.0:
-        longest = np.pi * np.sqrt(slider['mass'] / slider['stiffness']) / accuracy.steps
-    parts = max(1, int(np.ceil(step / longest)))
-    time['dt'] = float(step / parts)
-    output['interval'] = parts
-    friction = settings['friction']
-    if friction.get('law', 'subloading') == 'subloading' and friction.get('u_of_r', 'logarithm') == 'logarithm':
-        friction['scheme'] = 'exact_rate'
+def set_times(settings: Settings, end: float, step: float, rtol: float = FINE) -> None:
+    """Gives a run its end, and rows at the record's samples. Steps are adaptive, in continuous time: fixed ones with the
+    update by backward Euler bias the constants."""
+    time = settings.get('time', {})
+    kept = {key: time[key] for key in ('dt_min', 'dt_max') if key in time}
+    settings['time'] = {'t_end': float(end), 'rtol': max(float(time.get('rtol', FINE)), rtol), **kept}
+    settings['output'] = {'every': float(step)}
+    settings['friction'].pop('scheme', None)
 
 
 class Limits:
@@ -355,13 +333,21 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
         if best.cost < _by_noise_alone(problem, best.candidate):
             break
     problem.limits.tell('last steps')
-    return _descend(problem, best.candidate, FLOOR, STEP, 'linear', 15, 1e-6)
+    problem.shift = _shift_by_noise(problem, best.candidate)
+    return _descend(problem, best.candidate, FLOOR, STEP, 'linear', 30, 1e-7)
 
 
 def _by_noise_alone(problem: Problem, candidate: np.ndarray) -> float:
     """A misfit that the noise of the records can make where the constants are right, at most."""
     costs = np.sum(replicas(problem, candidate, 40)**2, axis=0)
     return float(np.mean(costs) + 2.0 * np.std(costs))
+
+
+def _shift_by_noise(problem: Problem, candidate: np.ndarray) -> np.ndarray:
+    """Mean of what noise does to the features; records whose events scatter have none of this."""
+    errors = np.concatenate([target.errors() for target in problem.targets])
+    repeats = np.concatenate([np.full(target.values.size, not target.analysis.scattered) for target in problem.targets])
+    return np.where(repeats, replicas(problem, candidate, 100).mean(axis=1) * errors, 0.0)
 
 
 def _descend(problem: Problem, start: np.ndarray, floor: float, step: float, loss: str, most: int,
@@ -375,7 +361,7 @@ def _descend(problem: Problem, start: np.ndarray, floor: float, step: float, los
 
 
 #: Relative error of the model, step of the differences, loss.
-STAGES = ((0.03, 0.05, 'soft_l1'), (0.006, 0.02, 'linear'), (FLOOR, STEP, 'linear'))
+STAGES = ((0.03, 0.05, 'soft_l1'), (0.006, 0.03, 'linear'), (0.0025, 0.02, 'linear'), (FLOOR, STEP, 'linear'))
 
 
 def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.ndarray], np.ndarray],
@@ -389,3 +375,58 @@ def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.nda
                           max_nfev=most, xtol=tolerance, ftol=tolerance, gtol=1e-10, x_scale=0.1)
     values = misfit(found.x)
     return found.x, float(values @ values)
+
+
+def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """Covariance of the constants along the flattest valley of the misfit. It is curved: slopes at the best candidate
+    alone make the errors several times too small. Where the constant with the largest part in the flattest direction is
+    held at one value after the other, the others are found anew; likelihoods weigh the way."""
+    if candidate.size < 2:
+        return np.zeros((candidate.size, candidate.size))
+    strengths, directions = np.linalg.eigh(slope.T @ slope)
+    held = int(np.argmax(np.abs(directions[:, 0])))
+    sigma = 1.0 / np.sqrt(max(strengths[0], 1e-12))
+    first = float(np.clip(sigma * abs(directions[held, 0]), 0.01, 0.1))
+    misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
+    start = directions[:, 0] / directions[held, 0]
+    places, costs = [candidate], [float(misfit @ misfit)]
+    for side in (-1.0, 1.0):
+        place, ahead = candidate, side * first * start
+        for _ in range(WAY):
+            guess = np.clip(place + ahead, problem.low + 1e-6, problem.high - 1e-6)
+            found, cost = _others(problem, guess, held)
+            ahead = 1.6 * (found - place)
+            place = found
+            places.append(found)
+            costs.append(cost)
+            if cost - costs[0] > FAR or abs(found[held] - guess[held]) > 1e-9 or ahead[held] == 0.0:
+                break
+        problem.limits.tell('error bars')
+    order = np.argsort([place[held] for place in places])
+    way, costs = np.array(places)[order], np.array(costs)[order]
+    fine = np.linspace(way[0, held], way[-1, held], 400)
+    weights = np.exp(-0.5 * (np.interp(fine, way[:, held], costs) - costs.min()))
+    apart = np.column_stack([np.interp(fine, way[:, held], values) for values in way.T]) - candidate
+    return (weights[:, None] * apart).T @ apart / weights.sum()
+
+
+WAY = 7        # steps along the valley to either side, at most
+FAR = 9.0      # rise of the misfit at which it is not followed any more: three standard deviations
+
+
+def _others(problem: Problem, guess: np.ndarray, held: int) -> tuple[np.ndarray, float]:
+    """The best candidate with one constant held."""
+    from scipy.optimize import least_squares
+
+    others = np.arange(guess.size) != held
+
+    def whole(part: np.ndarray) -> np.ndarray:
+        candidate = guess.copy()
+        candidate[others] = part
+        return candidate
+
+    found = least_squares(lambda part: problem.misfit(problem.evaluate('full', [whole(part)])[0]), guess[others],
+                          lambda part: problem.jacobian(whole(part))[0][:, others],
+                          bounds=(problem.low[others] - 1e-9, problem.high[others] + 1e-9), max_nfev=4, xtol=1e-4, ftol=1e-4,
+                          x_scale=0.1)
+    return whole(found.x), 2.0 * float(found.cost)
