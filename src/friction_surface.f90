@@ -23,8 +23,9 @@ module friction_surface
 
 contains
 
-    !> The only procedure here that allocates.
-    pure subroutine read_surface(props, surface, status)
+    !> The only procedure here that allocates. Not pure: a polymorphic component may not come out of
+    !> a pure procedure.
+    subroutine read_surface(props, surface, status)
         real(wp), intent(in) :: props(:)                !! material constants, as in
                                                         !! `friction_update`, valid
         type(sliding_surface), intent(out) :: surface   !! if the status is ok
