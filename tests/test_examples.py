@@ -86,17 +86,6 @@ class Installed(unittest.TestCase):
                             '-static ' + self.pkg_config('--static', '--cflags', '--libs', 'stickslip-fortran'))]
         self.assertEqual(lines, lines[:1] * len(lines))
 
-    def test_python_draws_its_hysteresis_loop(self):
-        try:
-            import matplotlib  # noqa: F401
-            import numpy  # noqa: F401
-        except ImportError:
-            self.skipTest('numpy and matplotlib are not installed: ./dev hosts installs them')
-        output = self.call(sys.executable, EXAMPLES / 'python/hysteresis.py', self.libraries / 'libstickslip.so',
-                           cwd=self.folder)
-        self.assertIn('picture: hysteresis.png', output)
-        self.assertTrue((self.folder / 'hysteresis.png').exists())
-
     def test_everything_a_host_needs_is_installed(self):
         for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'libstickslip_mgis.so', 'friction.h',
                      'stickslip_abaqus_standard_routines.f90', 'stickslip_abaqus_explicit_routines.f90', 'friction_mod.mod',
