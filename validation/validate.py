@@ -13,6 +13,7 @@ matplotlib.use('Agg')
 
 import block_on_slope  # noqa: E402
 import closed_forms  # noqa: E402
+import fault  # noqa: E402
 import orders  # noqa: E402
 import rate_and_state  # noqa: E402
 import stability  # noqa: E402
@@ -36,6 +37,7 @@ def main():
     rate_and_state.validate(program, report)
     stability.validate(program, report)
     orders.validate(program, report)
+    fault.validate(program, report)
     block_on_slope.validate(build, report)
     sys.exit(not report.write(INTRODUCTION))
 
