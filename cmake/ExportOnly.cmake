@@ -8,6 +8,6 @@ function(stickslip_export_only target)
     list(JOIN ARGN "; " names)
     file(CONFIGURE OUTPUT ${script} CONTENT "{ global: @names@; local: *; };\n" @ONLY)
     target_link_options(${target} PRIVATE
-        LINKER:--as-needed LINKER:--gc-sections LINKER:--version-script=${script})
+        -Wl,--as-needed,--gc-sections,--version-script=${script})
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${script})
 endfunction()
