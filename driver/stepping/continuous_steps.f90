@@ -9,10 +9,9 @@ module continuous_steps
     use archive_file, only : archive
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        friction_update, law_state, onset_drops, onset_gradual, onset_yields, prop_alpha_n, &
-        prop_alpha_t, read_surface, &
-        statev_dissipation, statev_mu, statev_r, statev_size, statev_slip, statev_status, &
-        statev_u_et, statev_u_n
+        friction_update, law_state, load_rates, onset_drops, onset_gradual, onset_yields, &
+        prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
+        statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
     use law_facts, only : typical_coefficient
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
@@ -115,13 +114,58 @@ contains
             if (eq%surface%traits%onset == onset_gradual) eq%phase = phase_slide
             if (start%normal <= self%open_below) eq%phase = phase_open
             eq%sense = sign(1.0_dp, self%y(elastic))
-            if (eq%rigid) then
-                eq%sense = sign(1.0_dp, start%v(1))
-                if (abs(start%v(1)) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
-                self%y(elastic) = 0.0_dp
-            end if
+            if (eq%rigid) call take_off_spring(self, start)
         end associate
     end subroutine prepare
+
+    !> A rigid contact carries what the block's velocity, or without one the friction at the start,
+    !> asks for.
+    subroutine take_off_spring(self, start)
+        class(continuous), intent(inout) :: self
+        type(slider_state), intent(in) :: start
+
+        associate (eq => self%equations)
+            eq%sense = sign(1.0_dp, start%v(1))
+            if (abs(start%v(1)) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
+            self%y(elastic) = 0.0_dp
+            if (.not. abs(start%v(1)) > 0.0_dp) self%y(velocity) = velocity_under(self, &
+                start%friction(1) / eq%area, start%normal)
+            call hold_velocity(self, start%normal)
+        end associate
+    end subroutine take_off_spring
+
+    !> Slip rate of a rigid contact that creeps under a traction [L/T]; 0 for others.
+    pure function velocity_under(self, traction, pressure) result(v)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: traction, pressure   !! [F/L^2]
+        real(dp) :: v
+        logical :: jumps
+
+        v = 0.0_dp
+        if (.not. self%equations%follows_traction()) return
+        associate (eq => self%equations)
+            call eq%surface%law%slip_rate(eq%law_state_of(self%y, pressure), &
+                load_rates(abs(traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.), v, jumps)
+        end associate
+        v = sign(v, traction)
+    end function velocity_under
+
+    !> The traction of a rigid contact that creeps with the block's velocity, as far as its cap lets
+    !> it grow.
+    pure subroutine hold_velocity(self, pressure)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp) :: resistance, by_rate
+
+        if (.not. self%equations%follows_traction()) return
+        associate (eq => self%equations)
+            call eq%surface%law%resistance_at(eq%law_state_of(self%y, pressure), &
+                abs(self%y(velocity)), pressure, resistance, by_rate)
+            if (resistance >= eq%surface%tau_max) eq%phase = phase_capped
+            eq%sense = sign(1.0_dp, self%y(velocity))
+            self%y(elastic) = eq%sense * min(resistance, eq%surface%tau_max) / eq%alpha
+        end associate
+    end subroutine hold_velocity
 
     !> Takes the unknowns from a state.
     pure subroutine synchronise(self, state)
@@ -181,6 +225,11 @@ contains
             again = .true.
             self%dt = tried%h * max(0.2_dp, 0.9_dp * tried%error**(-1.0_dp / order_of(self)))
             if (self%dt < max(self%dt_min, shortest * old%time)) then
+                if (stopped(self)) then
+                    call self%settle(old%time)
+                    self%dt = 1.0e3_dp * shortest * old%time
+                    cycle
+                end if
                 report%status = friction_no_convergence
                 if (self%jumped) report%status = friction_no_rate
                 return
@@ -195,10 +244,30 @@ contains
         call self%choose_method(tried)
         self%y = tried%y
         self%first = tried%last
+        if (self%equations%follows_traction()) self%y(velocity) = self%drive%drive_velocity(end, &
+            piece) - tried%last(extension)
         self%known = self%equations%steady .and. .not. self%implicit .and. tried%switch == 0
         if (tried%switch > 0) call self%switch(end, tried%switch)
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
+    !> can tell: friction falls to what balances the drive spring, or changes its side, at once.
+    function stopped(self) result(yes)
+        class(continuous), intent(inout) :: self
+        logical :: yes
+        real(dp) :: pull   !! as a traction [F/L^2]
+
+        associate (eq => self%equations, y => self%y)
+            pull = eq%stiffness * y(extension) / eq%area
+            yes = eq%follows_traction() .and. sign(pull, pull * y(elastic)) &
+                < eq%alpha * abs(y(elastic))
+            if (.not. yes) return
+            y(elastic) = -y(elastic)
+            if (abs(pull) < eq%alpha * abs(y(elastic))) y(elastic) = pull / eq%alpha
+            self%known = .false.
+        end associate
+    end function stopped
 
     !> Order of the estimate of the error.
     pure function order_of(self) result(order)
@@ -222,7 +291,11 @@ contains
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
                 call apply_normal_traction(self%system, pressure, state, taken)
                 self%known = .false.
-                if (eq%rigid) return
+                if (eq%rigid) then
+                    if (eq%phase == phase_capped) eq%phase = phase_slide
+                    call hold_velocity(self, pressure)
+                    return
+                end if
                 if (taken) then
                     call synchronise(self, state)
                 else
@@ -236,6 +309,7 @@ contains
                     eq%surface%traits%onset == onset_gradual)
                 self%y(elastic) = 0.0_dp
                 if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) self%y(extension) = 0.0_dp
+                call hold_velocity(self, pressure)
                 self%known = .false.
             end if
         end associate
@@ -433,8 +507,35 @@ contains
             if (.not. (middle > low .and. middle < high)) middle = 0.5_dp * (low + high)
             if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * shortest * t)) exit
         end do
+        if (g(which) <= 0.0_dp) call pass(self, t, which, high, tried)
         tried%switch = which
     end subroutine locate
+
+    !> Takes a step that ends just before its phase does again, until it ends just after: the next
+    !> phase starts where this one has ended.
+    subroutine pass(self, t, which, latest, tried)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t        !! [T]
+        integer, intent(in) :: which     !! way in which the phase ends
+        real(dp), intent(in) :: latest   !! length of a step that is long enough [T]
+        type(trial), intent(inout) :: tried
+        integer, parameter :: most_tries = 60
+        type(trial) :: again
+        real(dp) :: nudge, g(switches)
+        integer :: i
+
+        again = tried
+        nudge = max(1.0e-12_dp * tried%h, shortest * t)
+        do i = 1, most_tries
+            again%h = min(latest, again%h + nudge)
+            nudge = 2.0_dp * nudge
+            call self%attempt(t, again)
+            if (.not. again%error < huge(again%error)) return
+            tried = again
+            g = self%equations%switch_values(t + again%h, again%y, again%last)
+            if (g(which) > 0.0_dp .or. again%h >= latest) return
+        end do
+    end subroutine pass
 
     !> Where a switch value first becomes positive on the cubic through the ends of a step, part of
     !> the step.
@@ -497,6 +598,12 @@ contains
                 if (eq%surface%traits%memory == 1) self%y(ratio) = min(1.0_dp, eq%surface%tau_max &
                     / (self%y(memory) * pressure))
             else
+                if (eq%surface%traits%memory == 1) strength = self%y(ratio) * self%y(memory) &
+                    * pressure
+                if (eq%surface%traits%memory == 1 .or. eq%surface%traits%onset &
+                    == onset_yields) then
+                    self%y(elastic) = sign(min(strength, eq%surface%tau_max) / eq%alpha, eq%sense)
+                end if
                 eq%phase = phase_slide
             end if
         end associate
@@ -608,7 +715,7 @@ contains
             if (eq%phase /= phase_open) new%statev(1, statev_status) = merge(2.0_dp, 1.0_dp, &
                 dy(slip) > 0.0_dp)
             new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
-            new%statev(1, statev_u_et) = y(elastic)
+            new%statev(1, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
             new%statev(1, statev_r) = state%r
             if (eq%surface%traits%memory == 1) then
                 new%statev(1, statev_mu) = state%mu

@@ -42,7 +42,8 @@ module slider_rates
         integer :: phase = phase_stick
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
     contains
-        procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs
+        procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs, &
+            follows_traction
     end type slider_equations
 
     !> What a contact does to the block.
@@ -106,7 +107,12 @@ contains
         call inputs(self, t, v_drive, pressure, pressure_rate)
         pull = self%stiffness * y(extension)
         if (self%rigid .and. self%phase /= phase_open) then
-            call rigid_contact(self, y, pull, pressure, contact, failed)
+            if (self%follows_traction()) then
+                call following_contact(self, y, pull, pressure, pressure_rate, contact)
+                failed = .false.
+            else
+                call rigid_contact(self, y, pull, pressure, contact, failed)
+            end if
         else if (self%phase == phase_slide .and. self%surface%traits%onset == onset_drops) then
             call dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
         else
@@ -211,6 +217,7 @@ contains
         contact%velocity = y(velocity)
         call self%surface%law%resistance_at(law_state_of(self, y, pressure), max(0.0_dp, &
             self%sense * y(velocity)), pressure, resistance, by_rate)
+        if (self%sense * y(velocity) <= 0.0_dp) by_rate = 0.0_dp
         if (resistance > self%surface%tau_max) then
             resistance = self%surface%tau_max
             by_rate = 0.0_dp
@@ -253,12 +260,54 @@ contains
             call self%surface%law%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
                 contact%traction, by_rate)
             contact%traction = sense * min(contact%traction, self%surface%tau_max)
+            if (self%phase == phase_capped) contact%traction = sense * self%surface%tau_max
         end if
         if (self%surface%traits%memory == 0) return
         load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
         call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
             contact)
     end subroutine rigid_contact
+
+    !> Is the velocity of a block on a rigid contact that of its slip under the traction? Then that
+    !> is an unknown, in the place of the elastic displacement: slip rates go through decades.
+    pure function follows_traction(self) result(follows)
+        class(slider_equations), intent(in) :: self
+        logical :: follows
+
+        follows = self%rigid .and. self%phase == phase_slide .and. self%mass > 0.0_dp &
+            .and. self%surface%traits%onset == onset_gradual
+    end function follows_traction
+
+    !> A rigid contact that creeps, on a block with a mass: `traction(v, theta, p)` changes as its
+    !> arguments do.
+    pure subroutine following_contact(self, y, pull, pressure, pressure_rate, contact)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
+        type(contact_motion), intent(out) :: contact
+        real(dp), parameter :: little = 1.0e-6_dp
+        type(load_rates) :: load
+        type(law_state) :: state
+        real(dp) :: sense, tau, by_rate, shifted(controlled), other, by_other, acceleration
+        logical :: jumps
+
+        contact%traction = self%alpha * y(elastic)
+        sense = sign(1.0_dp, contact%traction)
+        state = law_state_of(self, y, pressure)
+        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        call self%surface%law%slip_rate(state, load, contact%slip, jumps)
+        contact%velocity = sense * contact%slip
+        call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
+            contact)
+        call self%surface%law%resistance_at(state, contact%slip, pressure, tau, by_rate)
+        shifted = y
+        shifted(memory) = y(memory) + little
+        call self%surface%law%resistance_at(law_state_of(self, shifted, pressure), contact%slip, &
+            pressure, other, by_other)
+        acceleration = (pull - self%damping * contact%velocity - self%area * contact%traction) &
+            / self%mass
+        contact%elastic = (by_rate * acceleration + sense * (tau / pressure * pressure_rate &
+            + (other - tau) / little * contact%memory)) / self%alpha
+    end subroutine following_contact
 
     !> The velocity without inertia, `pull = damping v + area traction(v)`, by Newton's method on
     !> the traction, from where the damper alone would carry the pull: v is convex in the traction.
@@ -343,7 +392,7 @@ contains
         tau = 0.0_dp
         if (self%phase == phase_open) return
         tau = self%alpha * y(elastic)
-        if (.not. self%rigid) return
+        if (.not. self%rigid .or. self%follows_traction()) return
         call inputs(self, t, v_drive, pressure, pressure_rate)
         call rigid_contact(self, y, self%stiffness * y(extension), pressure, contact, failed)
         tau = contact%traction
@@ -357,15 +406,16 @@ contains
         real(dp), intent(in) :: y(controlled)
         real(dp), intent(in) :: dy(unknowns)   !! rates there
         real(dp) :: g(switches)
+        real(dp), parameter :: just_below = 1.0_dp - 1.0e-9_dp   !! or round-off would call it back
         type(load_rates) :: load
-        real(dp) :: v_drive, pressure, pressure_rate, own
+        real(dp) :: v_drive, pressure, pressure_rate, own, by_rate
         logical :: jumps, gradual, capped
 
         g = -1.0_dp
         gradual = self%surface%traits%onset == onset_gradual
         capped = self%surface%tau_max < huge(own)
         if (self%phase == phase_open .or. gradual .and. .not. capped) return
-        if (gradual .and. self%rigid) return
+        if (gradual .and. self%rigid .and. .not. self%mass > 0.0_dp) return
         call inputs(self, t, v_drive, pressure, pressure_rate)
         associate (cap => self%surface%tau_max)
             select case (self%phase)
@@ -377,16 +427,22 @@ contains
                 else
                     g(1) = -dy(slip)
                     g(3) = y(memory) - self%surface%traits%kink
-                    if (capped .and. self%surface%traits%onset /= onset_drops) then
+                    if (capped .and. .not. self%rigid .and. self%surface%traits%onset &
+                        /= onset_drops) then
                         g(2) = strength(self, y, pressure) - cap
                     end if
                 end if
             case default
                 g(1) = -dy(slip)
                 if (.not. gradual) then
-                    g(2) = cap - strength(self, y, pressure)
+                    g(2) = just_below * cap - strength(self, y, pressure)
                 else if (self%surface%traits%memory == 1) then
-                    g(2) = cap - y(ratio) * y(memory) * pressure
+                    g(2) = just_below * cap - y(ratio) * y(memory) * pressure
+                else if (self%rigid) then
+                    call self%surface%law%resistance_at(law_state_of(self, y, pressure), &
+                        max(0.0_dp, dy(slip)), pressure, own, by_rate)
+                    g(1) = -1.0_dp
+                    g(2) = just_below * cap - own
                 else
                     load = load_rates(cap, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
                     call self%surface%law%slip_rate(law_state_of(self, y, pressure), load, own, &

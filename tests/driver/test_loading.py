@@ -289,7 +289,7 @@ class ContinuousTime(Columns):
     def test_a_rigid_contact_is_the_limit_of_stiff_ones(self):
         # scipy's Radau at rtol 1e-9: 3778.0755
         steps, = self.summary(self.inertial.replace('&friction', "&friction contact='rigid',").replace('1e-5 /', '1e-7 /'), 'steps')
-        self.assertLess(steps, 4000)
+        self.assertLess(steps, 10000)
         self.assertAlmostEqual(self.events()[-1]['recurrence_time'], 3778.0755, delta=0.01)
         self.summary(self.inertial.replace('alpha_t=1e10', 'alpha_t=1e12').replace('1e-5 /', '1e-7 /'), 'steps')
         self.assertAlmostEqual(self.events()[-1]['recurrence_time'], 3778.0755, delta=0.02)
