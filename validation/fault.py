@@ -77,6 +77,7 @@ def compare_laws(program, report):
                        absolute=True)
             report.row('subloading, 156 m: its peak slip rate, m/s', 'trial code, other steps', 0.82,
                        events['peak_slip_rate'][0], 0.02, absolute=True)
+    axis.set_ylim(-14, 2)   # a fault at rest has no logarithm
     axis.set_xlabel('time [years]')
     axis.set_ylabel('log10 of the largest slip rate [m/s]')
     axis.legend()

@@ -1,7 +1,9 @@
 # A fault: its largest slip rate in time, the slip rate in depth, and contours of slip.
+reset
 set datafile separator ","
 if (!exists("ending")) { ending = "png" }
 panels = strlen(contours[1:1]) > 0 && contours[1:1] ne " " ? 3 : 1
+if (panels > 1) { stats contours using (column(-1)) skip 1 nooutput }
 set terminal pngcairo size 1200,400*panels font "Sans,12"
 if (ending eq "svg") { set terminal svg size 1200,400*panels font "Sans,12" background "white" }
 set output stem.".".ending
@@ -11,10 +13,12 @@ set rmargin at screen 0.88
 set xlabel "time [".time_unit."]"
 set ylabel "largest slip rate [".length_unit."/".time_unit."]"
 set logscale y
+set yrange [seismic_rate*1e-12:*]   # a fault at rest has no logarithm
 set format y "10^{%T}"
 plot file using 1:(10**$2) skip 1 with lines linewidth 1.5 linecolor "#0072b2" notitle, \
     seismic_rate with lines linecolor "gray60" title "events"
 unset logscale y
+set yrange [*:*]
 set format y "%g"
 set format x "%g"
 if (panels > 1) {
@@ -28,7 +32,8 @@ if (panels > 1) {
     set autoscale xfix
     set view map
     unset key
-    plot contours using (column(-1)):3:5 skip 1 with image
+    plot contours using (column(-1)):3:5 skip 1 with points pointtype 5 \
+        pointsize (150.0 / STATS_max > 0.4 ? 150.0 / STATS_max : 0.4) linecolor palette
     set key top left
     set xlabel "slip [".length_unit."]"
     plot contours using ($2 > 0 ? NaN : $4):3 skip 1 with lines linecolor "#0072b2" title "between events", \
