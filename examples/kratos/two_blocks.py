@@ -24,10 +24,15 @@ def properties(model_part, number, values):
 
 
 class TwoBlocks:
-    """Two unit blocks (2 or 3 dimensions), one element each, and one interface element between them."""
+    """Two unit blocks (2 or 3 dimensions) and interface elements between them: one of each, in the plane `n` of each.
 
-    def __init__(self, library, dimension, friction=tuple(FRICTION), dt=0.01, youngs_modulus=1e4):
-        self.dimension, self.dt = dimension, dt
+    The pressing displacement grows along x by the part `uneven` of it.
+    """
+
+    def __init__(self, library, dimension, friction=tuple(FRICTION), dt=0.01, youngs_modulus=1e4, n=1, uneven=0.0):
+        if n > 1 and dimension > 2:
+            raise ValueError('many elements are for the plane')
+        self.dimension, self.dt, self.n, self.uneven = dimension, dt, n, uneven
         self.model = KM.Model()
         self.part = part = self.model.CreateModelPart('blocks', 2)
         KM.Logger.GetDefaultOutput().SetSeverity(KM.Logger.Severity.WARNING)
@@ -42,7 +47,7 @@ class TwoBlocks:
 
     def make_mesh(self):
         """Layers of nodes at heights 0, 1 (twice: the interface) and 2."""
-        corners = [(0, 0), (1, 0)] if self.dimension == 2 else [(0, 0), (1, 0), (1, 1), (0, 1)]
+        corners = [(k / self.n, 0) for k in range(self.n + 1)] if self.dimension == 2 else [(0, 0), (1, 0), (1, 1), (0, 1)]
         self.layers = []
         for layer, height in enumerate((0.0, 1.0, 1.0, 2.0)):
             nodes = []
@@ -68,14 +73,17 @@ class TwoBlocks:
         law = f'SmallStrainUMAT{self.dimension}DInterfaceLaw'
         contact.SetValue(KM.CONSTITUTIVE_LAW, KM.KratosGlobals.GetConstitutiveLaw(law).Clone())
         shape = '2D4N' if plane else '3D8N'
-        for number, (low, high) in enumerate(((0, 1), (2, 3)), start=1):
-            self.part.CreateNewElement(f'UPwSmallStrainElement{shape}', number, self.ring(low, high), elastic)
-        self.part.CreateNewElement(f'UPwSmallStrainInterfaceElement{shape}', 3, self.ring(1, 2), contact)
+        number = 0
+        for kind, low, high, prop in (('', 0, 1, elastic), ('', 2, 3, elastic), ('Interface', 1, 2, contact)):
+            for at in range(self.n):
+                number += 1
+                self.part.CreateNewElement(f'UPwSmallStrain{kind}Element{shape}', number, self.ring(low, high, at), prop)
 
-    def ring(self, low, high):
+    def ring(self, low, high, at):
         """Node numbers of an element between two layers, in the order that Kratos counts them."""
-        lower = [node.Id for node in self.layers[low]]
-        upper = [node.Id for node in self.layers[high]]
+        nodes = slice(at, at + 2) if self.dimension == 2 else slice(4)
+        lower = [node.Id for node in self.layers[low][nodes]]
+        upper = [node.Id for node in self.layers[high][nodes]]
         return lower + (upper[::-1] if self.dimension == 2 else upper)
 
     def fix(self):
@@ -104,7 +112,8 @@ class TwoBlocks:
         self.part.CloneTimeStep(self.part.ProcessInfo[KM.TIME] + self.dt)
         self.part.ProcessInfo[KM.STEP] += 1
         for node in self.layers[3]:
-            for variable, value in zip((KM.DISPLACEMENT_X, KM.DISPLACEMENT_Y, KM.DISPLACEMENT_Z), displacement):
+            moved = [*displacement[:-1], displacement[-1] * (1 + self.uneven * node.X0)]
+            for variable, value in zip((KM.DISPLACEMENT_X, KM.DISPLACEMENT_Y, KM.DISPLACEMENT_Z), moved):
                 node.SetSolutionStepValue(variable, 0, value)
         self.strategy.InitializeSolutionStep()
         self.strategy.Predict()
@@ -120,8 +129,8 @@ class TwoBlocks:
                 [:self.dimension] for low, high in zip(self.layers[1], self.layers[2])]
 
     def state(self):
-        """State variables of the contact, means over its points."""
-        contact, info = self.part.Elements[3], self.part.ProcessInfo
+        """State variables of the first interface element, means over its points."""
+        contact, info = self.part.Elements[2 * self.n + 1], self.part.ProcessInfo
         values = [contact.CalculateOnIntegrationPoints(KM.KratosGlobals.GetVariable(f'STATE_VARIABLE_{k}'), info)
                   for k in range(1, 9)]
         return [sum(value) / len(value) for value in values]

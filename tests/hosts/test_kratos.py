@@ -80,6 +80,30 @@ class Blocks(unittest.TestCase):
             with self.subTest(law=name):
                 self.run_blocks(3, name, friction)
 
+    def test_a_hundred_interface_elements_pressed_unevenly(self):
+        import two_blocks
+        for name in ('subloading', 'rate-and-state'):
+            with self.subTest(law=name):
+                friction, n = friction_point.LAWS[name], 100
+                blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], 2, friction, dt=DT, n=n, uneven=0.5)
+                points = [friction_point.FrictionPoint(friction) for _ in range(n + 1)]
+                share = [1 / n if 0 < k < n else 0.5 / n for k in range(n + 1)]
+                old, worst, counts = [[0.0, 0.0] for _ in points], 0.0, []
+                for x, _, normal in programme()[:60]:
+                    counts.append(blocks.step((x, normal)))
+                    expected = [0.0, 0.0]
+                    for k, (point, gap) in enumerate(zip(points, blocks.gaps())):
+                        traction = point.update([gap[1] - old[k][1], gap[0] - old[k][0]], DT)
+                        expected[0] += share[k] * traction[1]
+                        expected[1] += share[k] * traction[0]
+                        old[k] = gap
+                    worst = max(worst, *(abs(a - b) / abs(1e3 * PRESSED) for a, b in zip(blocks.force(), expected)))
+                print(f'\n  Kratos, {n} interface elements, {name}: {len(counts)} steps, worst difference {worst:.1e} of the '
+                      f'pressing force, Newton iterations at most {max(counts)}, mean {sum(counts) / len(counts):.2f}')
+                # Newton's method stops at 1e-10 of the first residual, some thousand times the pressing force here
+                self.assertLess(worst, 1e-6)
+                self.assertLessEqual(max(counts), 4)
+
     def test_the_example_s_own_constants_are_these(self):
         import two_blocks
         self.assertEqual(two_blocks.FRICTION, friction_point.LAWS['subloading'])
