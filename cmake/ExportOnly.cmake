@@ -11,3 +11,13 @@ function(stickslip_export_only target)
         -Wl,--as-needed,--gc-sections,--version-script=${script})
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${script})
 endfunction()
+
+# stickslip_export_header(TARGET HEADER): the functions that a C header declares.
+function(stickslip_export_header target header)
+    file(READ ${header} text)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+    string(REGEX MATCHALL "(friction|stickslip)_[a-z_]+\\(" names "${text}")
+    list(TRANSFORM names REPLACE "\\(" "")
+    list(REMOVE_DUPLICATES names)
+    stickslip_export_only(${target} ${names})
+endfunction()
