@@ -145,6 +145,7 @@ class Mgis(unittest.TestCase):
         self.assertLessEqual(max(abs(a - b) for a, b in zip(result.forces, stress)), 1e-10)
         for row, expected_row in zip(result.tangent, operator):
             self.assertLessEqual(max(abs(a - b) for a, b in zip(row, expected_row)), 1e-8)
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(result.state, point.statev)), 1e-10)
         in_plane = 0.5 * MODULUS * sum(end[i]**2 for i in range(layer.size) if i not in at)
         self.near(result.energies, [elastic / THICKNESS + in_plane, point.statev[7] / THICKNESS], 10.0)
         return result.state
