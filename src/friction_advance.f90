@@ -37,6 +37,7 @@ contains
         motion%pressure_given = .false.
         motion%pressure = 0.0_wp
         motion%blur = 0.0_wp
+        motion%blur_start = 0.0_wp
         if (sizes%ndir == 3) then
             motion%du(3) = du(3)
             call advance(motion, sizes, props, statev, traction, tangent, status)
@@ -83,7 +84,8 @@ contains
         motion%pressure_given = .false.
         motion%pressure = 0.0_wp
         state = statev(1:statev_size)
-        motion%blur = turning * (sum(abs(state(statev_u_n:statev_u_n + n - 1))) + sum(abs(du)))
+        motion%blur_start = turning * sum(abs(state(statev_u_n:statev_u_n + n - 1)))
+        motion%blur = motion%blur_start + turning * sum(abs(du))
         vector = matmul(state(statev_u_n:statev_u_n + 2), axes)
         state(statev_u_n:statev_u_n + n - 1) = vector(1:n)
         call advance(motion, array_sizes(1, n, size(props), statev_size), props, state, &
@@ -144,6 +146,7 @@ contains
         motion%pressure_given = .true.
         motion%pressure = pressure
         motion%blur = 0.0_wp
+        motion%blur_start = 0.0_wp
         call advance(motion, array_sizes(1, n + 1, size(props), size(statev)), props, statev, &
             contact_traction, contact_tangent, status)
         if (status < 0) return

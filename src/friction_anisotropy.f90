@@ -148,6 +148,7 @@ contains
         there%traction = self%alpha_t * (1.0_wp - x) * now%equivalent
         there%stiffness = self%alpha_t * now%reach
         there%rate = now%length * now%mean
+        there%scale = there%traction
     end subroutine on_an_ellipse
 
     !> The spring at x, but for the factors x and 1 - x: nothing here vanishes at either end.

@@ -24,6 +24,7 @@ module friction_batch_kernel
     real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: third = 1.0_wp / 3.0_wp
+    real(wp), parameter :: least_ratio = 1.0e-100_wp   !! of module friction_subloading_law
     real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
     !> Constants of the law and of the increment.
@@ -123,7 +124,7 @@ contains
             trial%tau(i) = inc%alpha_t * sqrt(trial%q1(i)**2 + trial%q2(i)**2)
             trial%c(i) = (mu - inc%mu_k) + inc%forming
             trial%slides(i) = 0.0_wp
-            strength = trial%r(i) * (inc%mu_k + trial%c(i) * iw0) * trial%p(i)
+            strength = max(trial%r(i), least_ratio) * (inc%mu_k + trial%c(i) * iw0) * trial%p(i)
             if (trial%tau(i) > strength * (1.0_wp + verge)) trial%slides(i) = 1.0_wp
             if (trial%p(i) <= 0.0_wp) trial%slides(i) = 0.0_wp
             fall = trial%p(i) * inc%kappa * trial%c(i)
@@ -227,6 +228,7 @@ contains
             packed%s(i) = above * gain * z
             packed%r(i) = (r_n(i) * below + rate * above) * below * z
             packed%log_r(i) = e_n * below**2 * z   ! 1 - R, for now
+            if (packed%r(i) < 0.5_wp) packed%log_r(i) = 1.0_wp - packed%r(i)
         end do
     end subroutine start
 
@@ -285,6 +287,7 @@ contains
                 log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * third))
                 if (moves(i) > 0.0_wp) packed%log_r(i) = log_r
                 if (max(inc%m * abs(ds) - small_step * (packed%r(i) + ms), &
+                    inc%kappa * abs(ds) - small_step * w, &
                     inc%alpha_t * abs(ds) - small_step * tau(i), &
                     abs(dr) - small_step * min(packed%r(i), e(i))) <= 0.0_wp) moves(i) = 0.0_wp
                 still = max(still, moves(i))

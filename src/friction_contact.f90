@@ -3,7 +3,7 @@
 module friction_contact
     use friction_anisotropy, only : orthotropy, slide_associated, sliding_way
     use friction_kinds, only : largest, wp
-    use friction_law, only : law, law_state, sliding
+    use friction_law, only : law, law_state, least_ratio, sliding
     use friction_reloading, only : find_reloading, reloading
     use friction_return_map, only : return_map
     use friction_status, only : friction_bad_increment, friction_ok
@@ -39,6 +39,7 @@ module friction_contact
         logical :: pressure_given   !! the pressure replaces the normal spring
         real(wp) :: blur            !! round-off of displacements, where it is more than that of
                                     !! each component, else 0 [L]
+        real(wp) :: blur_start      !! the same at the start of the increment [L]
     end type contact_motion
 
     !> State of a contact point.
@@ -98,8 +99,7 @@ contains
             tau, by_q, by_pressure, status)
         if (status < 0) return
         if (.not. motion%pressure_given) by_pressure = -springs%normal * by_pressure
-        if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure, status)
-        if (status < 0) return
+        if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure)
         traction(1) = -pressure
         traction(2) = tau(1)
         traction(3) = tau(2)
@@ -117,21 +117,15 @@ contains
 
     !> Derivatives where the increment closes a gap: its tangential part counts from touchdown on,
     !> and touchdown moves with the normal part.
-    pure subroutine touch_down(du, gap, loaded, by_q, by_du_n, status)
+    pure subroutine touch_down(du, gap, loaded, by_q, by_du_n)
         real(wp), intent(in) :: du(3)              !! increment of displacement [L]
         real(wp), intent(in) :: gap                !! at its start, > 0 [L]
         real(wp), intent(in) :: loaded             !! share after touchdown [-]
         real(wp), intent(inout) :: by_q(2, 2)      !! in: by the loaded displacement, out: by du
         real(wp), intent(inout) :: by_du_n(2)      !! by du(1) [F/L^3]
-        integer, intent(inout) :: status           !! bad increment, or as it was
-        real(wp), parameter :: steepest = 2.0_wp**960   !! that is still in range [F/L^3]
-        real(wp) :: by_loaded(2)
+        real(wp) :: by_loaded(2)   !! no more than some tractions, which end with the pressure
 
         by_loaded = by_q(:, 1) * du(2) + by_q(:, 2) * du(3)
-        if (maxval(abs(by_loaded)) / steepest > abs(du(1))) then
-            status = friction_bad_increment
-            return
-        end if
         by_du_n = by_du_n - (gap / du(1)) * (by_loaded / du(1))
         by_q = loaded * by_q
     end subroutine touch_down
@@ -183,10 +177,11 @@ contains
         start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
             call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
-                [q(1), plane%squeeze * q(2)], strength / alpha_t, pressure, reload)
+                [q(1), plane%squeeze * q(2)], strength / alpha_t, pressure, motion%blur_start, &
+                reload)
             reload%by_q(2) = plane%squeeze * reload%by_q(2)
             start%r = reload%share * start%r
-            strength = reload%share * strength
+            strength = max(reload%share, least_ratio / max(old%inner%r, least_ratio)) * strength
         end if
         limit = strength * (1.0_wp + verge)
         if (blur > 0.0_wp) limit = limit + alpha_t * blur + strength * (motion%blur / abs(new%u_n))

@@ -16,6 +16,10 @@ module friction_law
 
     public :: below, internal_variable, law, law_state, law_traits, load_rates, named_law, sliding
 
+    !> Least share of the strength, for a law whose strength is a share of a larger one: from less,
+    !> no slip starts, which would be in the underflow of the arithmetic.
+    real(wp), parameter, public :: least_ratio = 1.0e-100_wp
+
     !> A slope of which nothing better is known: its products with slips stay in range.
     real(wp), parameter, public :: unbounded = 2.0_wp**660   !! [F/L^3]
 

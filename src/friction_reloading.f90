@@ -19,29 +19,32 @@ contains
     !> Where traction and strength both change linearly, their ratio moves along a straight line,
     !> from the unit vector `e` (the traction starts on its surface) to q/reach; its least
     !> magnitude is its distance from zero.
-    pure subroutine find_reloading(u_et, q, reach, pressure, reload)
+    pure subroutine find_reloading(u_et, q, reach, pressure, blur, reload)
         real(wp), intent(in) :: u_et(2)    !! elastic tangential displacement at the start [L]
         real(wp), intent(in) :: q(2)       !! the same at the end, without slip [L]
         real(wp), intent(in) :: reach      !! the elastic displacement that the strength at the end
                                            !! allows, proportional to the pressure [L]
         real(wp), intent(in) :: pressure   !! at the end, > 0 [F/L^2]
+        real(wp), intent(in) :: blur       !! round-off of `u_et`, if that has lost its own [L]
         type(reloading), intent(out) :: reload
-        real(wp), parameter :: straight = 1.0e-11_wp   ! round-off, where u_n is larger than u_et
-        real(wp) :: e(2), way(2), length, ahead, aside
+        real(wp), parameter :: round_off = 8.0_wp * epsilon(round_off)
+        real(wp) :: e(2), way(2), start, length, ahead, aside, straight
 
         reload = reloading(share=1.0_wp, by_q=[0.0_wp, 0.0_wp], by_pressure=0.0_wp)
-        length = hypot(u_et(1), u_et(2))
-        if (.not. length > 0.0_wp) return
-        e = u_et / length
+        start = hypot(u_et(1), u_et(2))
+        if (.not. start > blur) return
+        e = u_et / start
         way = q - reach * e
         length = hypot(way(1), way(2))
         if (.not. length > 0.0_wp) return
         way = way / length
         ahead = e(1) * way(1) + e(2) * way(2)
         if (ahead >= 0.0_wp .or. q(1) * way(1) + q(2) * way(2) <= 0.0_wp) return
-        aside = e(1) * way(2) - e(2) * way(1)
+        aside = e(1) * q(2) - e(2) * q(1)   ! the part of the way along e has no share in it
         reload%share = 0.0_wp
+        straight = (round_off + blur / start) * hypot(q(1), q(2))
         if (abs(aside) <= straight) return   ! through zero, where |aside| has a kink
+        aside = aside / length
         reload%share = abs(aside)
         ahead = ahead / length
         reload%by_q = sign(ahead, -aside) * [-way(2), way(1)]

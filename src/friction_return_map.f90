@@ -28,6 +28,7 @@ module friction_return_map
         real(wp) :: traction    !! that the spring still carries [F/L^2]
         real(wp) :: stiffness   !! -d(traction)/d(slip), > 0 [F/L^3]
         real(wp) :: rate        !! d(slip)/dx, > 0
+        real(wp) :: scale       !! of the terms of the traction, whose round-off it has [F/L^2]
     end type unloaded
 
     !> That curve, with its parameter x: from 0, the trial, to `x_end`, where nothing is left. The
@@ -149,6 +150,7 @@ contains
         there%traction = self%trial - self%stiffness * x
         there%stiffness = self%stiffness
         there%rate = 1.0_wp
+        there%scale = self%trial
     end subroutine on_a_line
 
     !> Where the spring is down at a traction below its trial: Newton's method from the left, where
@@ -261,7 +263,7 @@ contains
         last_step = high - low
         do iteration = 1, max_iterations
             fall = (root%spring%stiffness + root%law%d_slip) * root%spring%rate
-            scale = spring%trial + root%law%resistance
+            scale = root%spring%scale + root%law%resistance
             if (abs(root%g) <= round_off * scale .or. high - low <= 2.0_wp * round_off * high) exit
             if (root%g > 0.0_wp) then
                 low = root%x
@@ -279,9 +281,9 @@ contains
             call slide_to(surface, spring, this, root)
         end do
         status = friction_ok
-        if (high > tiny(high)) then
+        if (root%law%slip > tiny(high)) then
             call surface%settle(root%g, root%spring%stiffness, this%pressure, root%law)
-        else   ! all of the slip is in the underflow
+        else   ! the slip is in the underflow
             call surface%settle(root%g, tiny(high), this%pressure, root%law)
             root%g = root%spring%traction - root%law%resistance
         end if

@@ -9,8 +9,8 @@
 module friction_subloading_exact_law
     use friction_exponential_integral, only : e1, inverse_e1
     use friction_kinds, only : wp
-    use friction_law, only : law_state, sliding
-    use friction_subloading_law, only : least_ratio, subloading_law
+    use friction_law, only : law_state, least_ratio, sliding
+    use friction_subloading_law, only : subloading_law
     implicit none
     private
 

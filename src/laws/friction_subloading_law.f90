@@ -13,8 +13,8 @@
 !> and `e = 1 - r`.
 module friction_subloading_law
     use friction_kinds, only : wp
-    use friction_law, only : internal_variable, law_state, law_traits, load_rates, named_law, &
-        onset_gradual, sliding, unbounded
+    use friction_law, only : internal_variable, law_state, law_traits, least_ratio, load_rates, &
+        named_law, onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         name_length, positive
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
@@ -76,9 +76,6 @@ module friction_subloading_law
         optional=.true., whole=.true., words='backward_euler exact_rate'), &
         law_constant('u_of_r', '-', 'evolution of R', lower=0.0_wp, upper=2.0_wp, not_beside=7, &
         optional=.true., whole=.true., words='logarithm cotangent reciprocal')]
-
-    !> R below which no slip starts: it would be in the underflow of the arithmetic.
-    real(wp), parameter, public :: least_ratio = 1.0e-100_wp
 
     !> The next error of a third-order iteration is the cube of a step this small, that of Newton's
     !> method its square: round-off either way.
@@ -293,6 +290,7 @@ contains
                 dr = dr + bend_r
             end if
             solved = self%m * abs(ds) <= small_step * (r + ms) &
+                .and. self%kappa * abs(ds) * iw <= small_step &
                 .and. stiffness * abs(ds) <= small_step * trial &
                 .and. abs(dr) <= small_step * min(r, e)
             if (solved) exit
@@ -377,6 +375,7 @@ contains
         shrink = 1.0_wp / (1.0_wp + rate * s)
         r = (r_n + rate * s) * shrink
         e = e_n * shrink
+        call pair(r, e)
     end subroutine start_far
 
     !> R after the slip `m s` of section 3: Newton's method from the left, where it climbs without
@@ -393,6 +392,7 @@ contains
 
         r = (r_n + ms) / (1.0_wp + ms)
         e = (1.0_wp - r_n) / (1.0_wp + ms)
+        call pair(r, e)
         log_r = 0.0_wp
         if (.not. r > 0.0_wp) return
         do iteration = 1, max_iterations
@@ -511,11 +511,18 @@ contains
 
         r = max(r + dr, 0.05_wp * r)
         e = max(e - dr, 0.05_wp * e)
+        call pair(r, e)
+    end subroutine move_ratio
+
+    !> The larger of R and 1 - R follows from the smaller one, which carries the digits.
+    pure subroutine pair(r, e)
+        real(wp), intent(inout) :: r, e
+
         if (r < 0.5_wp) then
             e = 1.0_wp - r
         else
             r = 1.0_wp - e
         end if
-    end subroutine move_ratio
+    end subroutine pair
 
 end module friction_subloading_law

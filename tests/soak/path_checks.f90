@@ -166,7 +166,7 @@ contains
         s = norm2(slid)
         along = this%q
         if (mat%associated) along = [tau(1), tau(2) / mat%rho**2]
-        if (this%q_scale < 1.0e-130_qp) return   ! squares underflow
+        if (this%q_scale < 1.0e-130_qp .or. norm2(tau) < 1.0e-130_qp) return   ! squares underflow
         kind_ = k_direction
         if (abs(slid(1) * along(2) - slid(2) * along(1)) > 16.0_qp * (error + eps * s) &
             * norm2(along)) return
@@ -180,13 +180,14 @@ contains
             return
         end if
         work = dot_product(tau, slid)
-        if (abs(t%new(8)) < 1.0e100_dp .and. mat%form /= 3 .and. abs(real(t%new(8), qp) - t%old(8) &
-            - work) > 16.0_qp * (error * norm2(tau) + eps * (t%new(8) + work)) &
+        gained = real(t%new(8), qp) - t%old(8)   ! at the end's traction, but by the exact rate
+        if (work > 1.0e-280_qp .and. t%new(8) < 1.0e100_dp .and. mat%form /= 3 &
+            .and. abs(gained - work) > 16.0_qp * (error * norm2(tau) + eps * (t%new(8) + work)) &
             * max(1.0_qp, 1.0_qp / mat%rho)) return
 
         ! The slip is known better from its sum where that is short.
         if (t%new(7) < this%q_scale) then
-            s = gained
+            s = real(t%new(7), qp) - t%old(7)
             error = 4.0_qp * eps * t%new(7)
         end if
         kind_ = k_equation
@@ -401,7 +402,7 @@ contains
         worst = real(maxval(abs(t%tangent - by_du)), dp) / max(stiff, &
             real(maxval(abs(by_du)), dp)**2 / stiff)
         error = max(error, worst)
-        if (worst > 1.0e-11_dp) kind_ = k_tangent
+        if (worst > 1.0e-12_dp) kind_ = k_tangent
     end function check_tangent
 
 end module path_checks

@@ -19,18 +19,21 @@ program soak
     implicit none
 
     integer, parameter :: steps = 8   !! increments of a path
-    integer, parameter :: some = 8, few = 256, very_few = 2048   !! one of so many is looked at
     integer, parameter :: n_bins = 12   !! of evaluations: 2**(k-1) to 2**k - 1
     integer, parameter :: as_update = 1, in_a_plane = 2, pressure_given = 3, in_a_frame = 4
 
     type(tally) :: sum_
     type(trial_of) :: worst
+    integer :: some, few, very_few   !! one of so many is looked at: of 1e6 at most as many
     integer :: bins(n_bins), seed, n, most_evaluations
 
     seed = 1
     n = 100000
     if (command_argument_count() > 0) seed = argument(1)
     if (command_argument_count() > 1) n = argument(2)
+    some = 8 * max(1, n / 1000000)
+    few = 32 * some
+    very_few = 8 * few
     call seed_draws(seed)
     bins = 0
     most_evaluations = 0
@@ -89,7 +92,7 @@ contains
             one(i)%pressure = this%pressure * draw(-0.2_dp, 2.0_dp)
             call update(one(i), entry_)
             call examine(this, entry_, one(i))
-            if (entry_ == in_a_frame .and. .not. this%extreme .and. mod(i, some) == 0) then
+            if (entry_ == in_a_frame .and. .not. this%extreme .and. mod(i, 8) == 0) then
                 call compare_frame(one(i))
             end if
         end do
@@ -267,6 +270,7 @@ contains
 
         if (t%status < 0) return
         if (abs(t%new(2)) < 1.0e-10_dp * (norm2(t%du) + norm2(t%old(2:4)))) return   ! open or not?
+        if (norm2(t%old(3:4)) < 1.0e-12_dp * abs(t%old(2))) return   ! its direction gets lost
         q = random_rotation()
         state = t%old
         state(2:4) = matmul(q, state(2:4))
