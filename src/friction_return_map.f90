@@ -77,18 +77,22 @@ contains
         integer, intent(out) :: status         !! ok, snap back, or no convergence
         type(unloading) :: spring
         real(wp) :: x
-        logical :: solved
+        logical :: capped, solved
 
         status = friction_ok
-        spring = unloading(trial, stiffness, trial / stiffness)
-        if (.not. cap_holds(surface, spring, load(pressure, dt, old))) then
+        capped = trial > surface%tau_max
+        if (capped) capped = cap_holds(surface, unloading(trial, stiffness, trial / stiffness), &
+            load(pressure, dt, old))
+        if (.not. capped) then
             call surface%solve(trial, stiffness, pressure, dt, old, answer, solved)
             if (solved) return
         end if
+        spring = unloading(trial, stiffness, trial / stiffness)
         call return_along(surface, spring, pressure, dt, old, answer, x, status)
     end subroutine return_map
 
-    !> Does the law itself resist at least as much as its cap, where the spring is down at that?
+    !> Does the law itself resist at least as much as its cap, where the spring, whose trial is
+    !> above that, is down at it?
     pure function cap_holds(surface, spring, this) result(holds)
         class(law), intent(in) :: surface
         type(unloading), intent(in) :: spring
@@ -96,8 +100,6 @@ contains
         logical :: holds
         type(place) :: there
 
-        holds = .false.
-        if (.not. spring%trial > surface%tau_max) return
         there%x = (spring%trial - surface%tau_max) / spring%stiffness
         call slide_to(surface, spring, this, there)
         holds = .not. there%g > 0.0_wp
