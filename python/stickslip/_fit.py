@@ -196,7 +196,7 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
     inverse = np.linalg.pinv(slope, rcond=1e-9)
     covariance = np.cov(inverse @ replicas(problem, candidate, REPLICAS), ddof=0).reshape(2 * (candidate.size,))
-    covariance += along_valley(problem, candidate, slope)
+    covariance += along_valley(problem, candidate, slope, 0) + along_valley(problem, candidate, slope, 1)
     covariance += (inverse * _floors(problem.targets)**2) @ inverse.T
     freedom = misfit.size - candidate.size
     if freedom > 0:

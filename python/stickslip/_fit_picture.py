@@ -70,5 +70,5 @@ def _left_over(axes, fit: Fit, target) -> None:
         part = names == name
         axes.plot(place[part], misfit[part], 'o', ms=3, label=name)
     axes.axhspan(-2, 2, color='0.9', zorder=0)
-    axes.set(xlabel='feature', ylabel='computed less measured [standard deviations]', xticks=[])
+    axes.set(xlabel='feature', ylabel='misfit [standard deviations]', xticks=[])
     axes.legend(fontsize='small')

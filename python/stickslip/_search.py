@@ -377,18 +377,18 @@ def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.nda
     return found.x, float(values @ values)
 
 
-def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Covariance of the constants along the flattest valley of the misfit. It is curved: slopes at the best candidate
+def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, which: int) -> np.ndarray:
+    """Covariance of the constants along a flat valley of the misfit: 0 the flattest, 1 the next. It is curved: slopes at the best candidate
     alone make the errors several times too small. Where the constant with the largest part in the flattest direction is
     held at one value after the other, the others are found anew; likelihoods weigh the way."""
-    if candidate.size < 2:
+    if candidate.size < which + 2:
         return np.zeros((candidate.size, candidate.size))
     strengths, directions = np.linalg.eigh(slope.T @ slope)
-    held = int(np.argmax(np.abs(directions[:, 0])))
-    sigma = 1.0 / np.sqrt(max(strengths[0], 1e-12))
-    first = float(np.clip(sigma * abs(directions[held, 0]), 0.01, 0.1))
+    strength, direction = strengths[which], directions[:, which]
+    held = int(np.argmax(np.abs(direction)))
+    first = float(np.clip(abs(direction[held]) / np.sqrt(max(strength, 1e-12)), 0.01, 0.1))
     misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
-    start = directions[:, 0] / directions[held, 0]
+    start = direction / direction[held]
     places, costs = [candidate], [float(misfit @ misfit)]
     for side in (-1.0, 1.0):
         place, ahead = candidate, side * first * start
