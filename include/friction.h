@@ -34,7 +34,8 @@ enum friction_status {
  *   dtime     increment of time, >= 0 [T]
  *   nprops    number of material constants
  *   props     number of the law, alpha_n, alpha_t, then its own (docs/laws.md), e.g. of law 1, subloading:
- *             mu_s, mu_k, kappa, xi, m[, mu_0]; options (docs/law_options.md) follow them
+ *             mu_s, mu_k, kappa, xi, m[, mu_0]; options (docs/law_options.md) follow them; numbers after those
+ *             of the law have to be finite and are not used
  *   nstatv    number of state variables, 8 or more
  *   statev    state at the start in, at the end out; all zero = virgin:
  *             status (0 virgin, 1 stick, 2 slip, 3 open), u_n, u_et1, u_et2, mu, R, slip, dissipated energy
@@ -121,8 +122,8 @@ typedef struct {
     char rule[104];          /* in words: "must be >= mu_k", ... */
     char default_text[24];   /* in words: "0", "mu_s", "d_c/v0"; "" where there is none */
     char words[72];          /* of a choice: those that stand for 0, 1, ... in the program's input */
-    double lower, upper;     /* range; where a constant has to be > 0, `lower` is the least normal number; the rule may
-                              * ask for more */
+    double lower, upper;     /* range; where a constant has to be > 0, `lower` is the least number taken for such; the
+                              * rule may ask for more, or allow 0, too */
     int optional;            /* 1: it may be left out, with all that follow it */
     int choice;              /* 1: a whole number, one of the words */
 } friction_constant_facts;

@@ -3,6 +3,7 @@
 module friction_facts_c
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
         c_null_char, c_ptr
+    use friction_kinds, only : largest
     use friction_law_texts, only : default_text, is_blank
     use friction_mod, only : friction_bad_law, friction_bad_property, friction_bad_size, &
         friction_check, friction_constants, friction_default, friction_internal_variable, &
@@ -86,7 +87,7 @@ contains
             call to_c(default_text(table, place + 1), record%default_text)
             call to_c(this%words, record%words)
             record%lower = this%lower
-            record%upper = this%upper
+            record%upper = min(this%upper, largest)
             record%optional = merge(1, 0, this%optional)
             record%choice = merge(1, 0, this%whole)
         end associate

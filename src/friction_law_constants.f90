@@ -21,7 +21,8 @@ module friction_law_constants
         character(len=unit_length) :: unit = ''    !! '-', 'L', 'T/L', 'F/L^2', ...
         character(len=meaning_length) :: meaning = ''   !! in words
         real(wp) :: lower = 0.0_wp         !! least value; `positive` stands for > 0
-        real(wp) :: upper = huge(1.0_wp)   !! largest value
+        real(wp) :: upper = huge(1.0_wp)   !! largest value, where it is below that of all numbers
+                                           !! (`largest`)
         logical :: or_zero = .false.       !! zero is allowed, too, and means the default
         integer :: not_below = 0           !! place of the constant that it must not fall below
         integer :: not_above = 0           !! place of the constant that it must not exceed

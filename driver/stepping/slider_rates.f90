@@ -1,5 +1,5 @@
 !> One block in continuous time: its rate equations, in each phase of its contact, and the
-!> quantities that change their sign where one phase ends (docs/theory.md, section 11).
+!> quantities that change their sign where one phase ends (docs/theory.md, section 13).
 module slider_rates
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : law_state, load_rates, onset_drops, onset_gradual, sliding_surface

@@ -215,6 +215,40 @@ static void bad_calls_are_codes_and_touch_nothing(void)
     CHECK(friction_update(3, du, 0, 9, props, 8, statev, traction, tangent) == FRICTION_BAD_STATE);
 }
 
+/* The ends of the ranges that are told: those of the stiffnesses are taken, what is outside any is refused. */
+static void ranges_are_those_that_are_checked(void)
+{
+    static const double valid[6][14] = {{0},
+                                        {1, 1e3, 8e2, .45, .25, 8, .2, 60, .45, 0, 0, 0, 1, 0},
+                                        {2, 1e3, 8e2, .4, 0, 1, 0},
+                                        {3, 1e3, 8e2, .45, .25, 1, 0, 1, 0},
+                                        {4, 1e3, 8e2, .01, .015, .01, .01, .4, 0, 1, 0, 1, 0},
+                                        {5, 1e3, 8e2, .45, .25, .01, 0, 1, 0}};
+    friction_law_facts law;
+    friction_constant_facts constant;
+    double props[14];
+    int number, i;
+
+    for (number = 1; number <= friction_law_count(); number++) {
+        CHECK(friction_get_law(number, &law) == FRICTION_OK);
+        for (i = 0; i < law.constants; i++) {
+            CHECK(friction_get_constant(number, i, &constant) == FRICTION_OK);
+            memcpy(props, valid[number], sizeof props);
+            CHECK(friction_check(law.constants, props, 0, NULL) == FRICTION_OK);
+            props[i] = 1.01 * constant.upper;
+            CHECK(friction_check(law.constants, props, 0, NULL) < 0);
+            props[i] = constant.lower > 0 ? 0.99 * constant.lower : -1;
+            CHECK(friction_check(law.constants, props, 0, NULL) < 0);
+            if (i != 1 && i != 2)
+                continue;
+            props[i] = constant.upper;
+            CHECK(friction_check(law.constants, props, 0, NULL) == FRICTION_OK);
+            props[i] = constant.lower;
+            CHECK(friction_check(law.constants, props, 0, NULL) == FRICTION_OK);
+        }
+    }
+}
+
 static void laws_tell_their_constants(void)
 {
     static const char *names[14] = {"law", "alpha_n", "alpha_t", "mu_s", "mu_k", "kappa", "xi", "m", "mu_0", "scheme",
@@ -240,6 +274,7 @@ static void laws_tell_their_constants(void)
     CHECK(friction_get_constant(4, 8, &constant) == FRICTION_OK && constant.choice == 1 && constant.upper == 1
           && strcmp(constant.words, "ageing slip") == 0 && strcmp(constant.default_text, "ageing") == 0);
     CHECK(friction_get_default(8, rate_state, 9, &value) == FRICTION_OK && value == 3);
+    ranges_are_those_that_are_checked();
 
     CHECK(friction_get_law(0, &law) == FRICTION_BAD_LAW && friction_get_law(6, &law) == FRICTION_BAD_LAW);
     CHECK(friction_get_law(1, NULL) == FRICTION_NULL_POINTER);
