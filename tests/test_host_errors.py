@@ -10,15 +10,15 @@ import unittest
 
 CALL = """
 import ctypes, sys
-path, host, material, dtime, *numbers = sys.argv[1:]
+path, host, material, dtime, thickness, modulus, strain, *numbers = sys.argv[1:]
 props = [float(number) for number in numbers]
 if host == 'calculix':
-    props = [0.1, 1.0, *props]
+    props = [float(thickness), float(modulus), *props]
 Six, Full, State = ctypes.c_double * 6, ctypes.c_double * 36, ctypes.c_double * 8
 real, whole = (lambda x: ctypes.byref(ctypes.c_double(x))), (lambda k: ctypes.byref(ctypes.c_int(k)))
 unset, zero = (None if host == 'kratos' else real(0.0)), Full()
 time = (ctypes.c_double * 2)()
-shear = Six(0.0, 0.0, -0.01, 0.0, 0.01, 0.0)
+shear = Six(float(strain), 0.0, -0.01, 0.0, 0.01, 0.0)
 name = ctypes.create_string_buffer(material.encode().ljust(80))
 step = (ctypes.c_int * 4)(1, 1, 0, 0)
 ctypes.CDLL(path).umat_(
@@ -34,9 +34,10 @@ RATE_AND_STATE = (4, 1000, 800, 0.01, 0.015, 1e-3, 1.0, 0.4)
 
 
 class Errors(unittest.TestCase):
-    def call(self, host, props, dtime=0.1, material='@ABAQUS_STICKSLIP'):
+    def call(self, host, props, dtime=0.1, material='@ABAQUS_STICKSLIP', layer=(0.1, 1.0, 0.0)):
         library = os.environ['STICKSLIP_' + host.upper()]
-        return subprocess.run([sys.executable, '-c', CALL, library, host, material, str(dtime), *map(str, props)], text=True,
+        numbers = map(str, (dtime, *layer, *props))
+        return subprocess.run([sys.executable, '-c', CALL, library, host, material, *numbers], text=True,
                               capture_output=True, check=False)
 
     def test_valid_input_is_solved(self):
@@ -50,6 +51,16 @@ class Errors(unittest.TestCase):
             result = self.call('calculix', props, dtime)
             self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
             self.assertRegex(result.stdout, rf'\*ERROR in umat: stickslip, UMAT, code {code}: .*, element 7, point 5')
+
+    def test_a_layer_refuses_what_the_friction_routine_does_not_see(self):
+        nan = float('nan')
+        for code, layer in ((-3, (0.0, 1.0, 0.0)), (-3, (nan, 1.0, 0.0)), (-3, (1e-320, 1.0, 0.0)), (-3, (1e200, 1.0, 0.0)),
+                            (-3, (0.1, -1.0, 0.0)), (-3, (0.1, 1e200, 0.0)), (-4, (0.1, 1.0, nan)), (-4, (0.1, 0.0, nan)),
+                            (-4, (0.1, 1.0, 1e160)), (-4, (0.1, 1e90, 1e90))):
+            with self.subTest(thickness=layer[0], modulus=layer[1], strain=layer[2]):
+                result = self.call('calculix', (2, 1000, 800, 0.4), layer=layer)
+                self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
+                self.assertIn(f'code {code}: ', result.stdout)
 
     def test_calculix_hears_that_its_other_interface_is_not_served(self):
         result = self.call('calculix', RATE_AND_STATE, material='@ABAQUSNL_STICKSLIP')

@@ -201,15 +201,19 @@ class Mgis(unittest.TestCase):
                  (zone, properties('Subloading'), float('nan'), '-4'),
                  (behaviour('RateAndState', 'PlaneStrain'), properties('RateAndState'), 0.0, '-9')]
         cases += [(layer, properties('Subloading', layer=True, **{name: value}), 0.1, '-3')
-                  for name, value in (('Thickness', 0.0), ('Thickness', float('nan')), ('InPlaneModulus', -1.0))]
+                  for name, value in (('Thickness', 0.0), ('Thickness', float('nan')), ('Thickness', 1e-320),
+                                      ('Thickness', 1e200), ('InPlaneModulus', -1.0), ('InPlaneModulus', 1e200))]
         for found, constants, dt, code in cases:
             moved = [-1e-3] * found.size
             result = found.integrate([0.0] * found.size, moved, constants, [0.0] * 8, dt)
             self.assertEqual((result.code, result.rdt), (-1, 0.1))
             self.assertIn(f'stickslip, code {code}: ', result.message)
             self.assertEqual(result.forces, [0.0] * found.size)
-        result = layer.integrate([0.0] * 4, [float('nan'), 0, 0, 0], properties('Subloading', layer=True), [0.0] * 8, 0.1)
-        self.assertIn('code -4', result.message)
+        for strain, modulus in ((float('nan'), 1.0), (1e160, 1.0), (1e160, 0.0), (1e90, 1e90)):
+            constants = properties('Subloading', layer=True, InPlaneModulus=modulus)
+            result = layer.integrate([0.0] * 4, [strain, 0, 0, 0], constants, [0.0] * 8, 0.1)
+            self.assertIn('code -4', result.message)
+            self.assertEqual(result.forces, [0.0] * 4)
         quiet = behaviour('RateAndState', 'PlaneStrain').integrate([0, 0], [0, 0], properties('RateAndState'), [0.0] * 8, 0.0)
         self.assertEqual(quiet.code, 1)   # neither time nor motion
 

@@ -2,11 +2,11 @@
 !> UMATs of Abaqus and CalculiX share. Nothing here is allocated: components are gathered one by
 !> one.
 module friction_layer
-    use, intrinsic :: iso_fortran_env, only : int64
     use friction_host, only : elastic_energy, host_update
-    use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_property, friction_bad_size, friction_ok, prop_alpha_t, &
-        statev_dissipation, statev_size, statev_u_et, statev_u_n
+    use friction_kinds, only : largest, wp
+    use friction_law_constants, only : positive
+    use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_size, &
+        friction_ok, prop_alpha_t, statev_dissipation, statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -43,8 +43,9 @@ contains
         if (nprops < first_friction_prop) return
         status = friction_bad_property
         layer = layer_constants(props(prop_thickness), props(prop_modulus))
-        if (.not. (is_finite(layer%thickness) .and. is_finite(layer%modulus))) return
-        if (layer%thickness <= 0.0_wp .or. layer%modulus < 0.0_wp) return
+        if (.not. (usable(layer%thickness) .and. usable(layer%modulus))) return
+        if (layer%thickness < positive .or. layer%modulus < 0.0_wp) return
+        if (layer%modulus > 0.0_wp .and. layer%modulus < positive) return
         status = friction_ok
     end subroutine read_layer
 
@@ -83,6 +84,8 @@ contains
         if (at%n == 0) return
         call read_layer(nprops, props, layer, status)
         if (status < 0) return
+        status = friction_bad_increment
+        if (.not. usable_in_plane(at, ndi + nshr, layer%modulus, dstran, stress)) return
         do i = 1, at%n
             du(i) = layer%thickness * dstran(at%place(i))
         end do
@@ -122,18 +125,41 @@ contains
             if (i == 0) cycle
             stress(i) = stress(i) + stiffness(k) * dstran(i)
             ddsdde(i, i) = stiffness(k)
-            energy = energy + 0.5_wp * stress(i)**2 / stiffness(k)
+            energy = energy + 0.5_wp * stress(i) * (stress(i) / stiffness(k))
         end do
     end subroutine extend_in_plane
 
-    !> Read from the exponent, so that a NaN raises no exception in the host.
-    pure function is_finite(x) result(finite)
-        real(wp), intent(in) :: x
-        logical :: finite
-        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 52)
+    !> Are strains and stresses in the plane of the layer, which the friction routine does not see,
+    !> in the range that it takes?
+    pure function usable_in_plane(at, ntens, modulus, dstran, stress) result(usable_)
+        type(layer_components), intent(in) :: at
+        integer, intent(in) :: ntens
+        real(wp), intent(in) :: modulus             !! [F/L^2]
+        real(wp), intent(in) :: dstran(ntens)
+        real(wp), intent(in) :: stress(ntens)       !! at the start [F/L^2]
+        logical :: usable_
+        integer :: places(3), i, k
 
-        finite = iand(transfer(x, exponent_bits), exponent_bits) /= exponent_bits
-    end function is_finite
+        places = [at%direct, at%shear]
+        usable_ = .false.
+        do k = 1, size(places)
+            i = places(k)
+            if (i == 0) cycle
+            if (.not. usable(dstran(i))) return
+            if (.not. modulus > 0.0_wp) cycle
+            if (.not. (usable(stress(i)) .and. usable(modulus * dstran(i)))) return
+        end do
+        usable_ = .true.
+    end function usable_in_plane
+
+    !> Is a number finite and not too large? Read from the exponent, so that a NaN raises no
+    !> exception in the host.
+    pure function usable(x)
+        real(wp), intent(in) :: x
+        logical :: usable
+
+        usable = exponent(x) <= exponent(largest)
+    end function usable
 
     pure function components(ndi, nshr) result(at)
         integer, intent(in) :: ndi, nshr

@@ -3,7 +3,6 @@
  * Two behaviours a law: StickSlip<Law>, a cohesive zone (OpeningDisplacement to CohesiveForce), and
  * StickSlip<Law>Layer, a thin layer of solid elements (Strain to Stress). The constants are material
  * properties, the state is in internal state variables (docs/hosts.md). */
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,6 +32,9 @@ typedef struct {
     initial_state s0;      /* at the start of the increment */
     final_state s1;        /* at its end */
 } behaviour_data;
+
+/* Bounds of numbers, those of friction.h's constants. */
+static const double least = 0x1p-333, largest = 0x1p333;
 
 enum { failed = -1, unreliable = 0, reliable = 1, message_size = 512, most_props = 8 };
 
@@ -176,11 +178,12 @@ static int integrate(behaviour_data *data, int law, int own, const geometry *for
         thickness = properties[0];
         modulus = properties[1];
         properties += 2;
-        if (!(thickness > 0 && thickness <= DBL_MAX && modulus >= 0 && modulus <= DBL_MAX))
+        if (!(thickness >= least && thickness < largest && (modulus == 0 || modulus >= least) && modulus < largest))
             return fail(data, FRICTION_BAD_PROPERTY);
     }
-    if (form->layer && asked.integrate && !(squares(data->s1.gradients, form->size) <= DBL_MAX))
-        return fail(data, FRICTION_BAD_INCREMENT);
+    for (i = 0; form->layer && asked.integrate && i < form->size; i++)
+        if (!(fabs(data->s1.gradients[i]) < largest && modulus * fabs(data->s1.gradients[i]) < largest))
+            return fail(data, FRICTION_BAD_INCREMENT);
     props[0] = law;
     memcpy(props + 1, properties, (size_t)(own + 2) * sizeof *props);
     memcpy(statev, data->s0.internal_state_variables, sizeof statev);
