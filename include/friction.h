@@ -55,7 +55,13 @@ int friction_update(int ndir, const double *du, double dtime, int nprops, const 
 int friction_update_batch(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
                           int nstatv, double *statev, double *traction, double *tangent, int *status);
 
-/* The same for arrays that keep each point's numbers together, as C and numpy order them: component j of
+/* The same with constants of its own at each point: constant k of point i is props[k*n + i]. The fast way is
+ * for points that share the law and its choices (scheme, u_of_r, evolution, direction). */
+int friction_update_batch_props(int64_t n, int ndir, const double *du, double dtime, int nprops,
+                                const double *props, int nstatv, double *statev, double *traction,
+                                double *tangent, int *status);
+
+/* friction_update_batch for arrays that keep each point's numbers together, as C and numpy order them: component j of
  * point i is du[i*ndir + j], state variable j of point i is statev[i*nstatv + j], and
  * d(traction i)/d(du j) of point k is tangent[(k*ndir + i)*ndir + j]. */
 int friction_update_points(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,

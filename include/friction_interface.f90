@@ -8,7 +8,8 @@ module friction_interface
     implicit none
     private
 
-    public :: friction_update, friction_update_batch, friction_update_points, friction_tangential, &
+    public :: friction_update, friction_update_batch, &
+        friction_update_batch_props, friction_update_points, friction_tangential, &
         friction_rates, friction_slip_rates, friction_message, friction_version, friction_text
     public :: friction_law_count, friction_get_law, friction_get_constant, friction_get_default, &
         friction_check, friction_law_facts, friction_constant_facts
@@ -78,7 +79,27 @@ module friction_interface
             integer(c_int) :: status                      !! the worst of all points
         end function friction_update_batch
 
-        !> The same with the point as the last index.
+        !> The same with constants of its own at each point.
+        function friction_update_batch_props(n, ndir, du, dtime, nprops, props, nstatv, &
+            statev, traction, tangent, point_status) result(status) &
+            bind(C, name='friction_update_batch_props')
+            import :: c_double, c_int, c_int64_t
+            implicit none
+            integer(c_int64_t), value, intent(in) :: n    !! points
+            integer(c_int), value, intent(in) :: ndir
+            real(c_double), intent(in) :: du(n, ndir)
+            real(c_double), value, intent(in) :: dtime
+            integer(c_int), value, intent(in) :: nprops
+            real(c_double), intent(in) :: props(n, nprops)
+            integer(c_int), value, intent(in) :: nstatv
+            real(c_double), intent(inout) :: statev(n, nstatv)
+            real(c_double), intent(inout) :: traction(n, ndir)
+            real(c_double), intent(inout) :: tangent(n, ndir, ndir)
+            integer(c_int), intent(inout) :: point_status(n)
+            integer(c_int) :: status                      !! the worst of all points
+        end function friction_update_batch_props
+
+        !> Many points with the same constants; the point is the last index.
         function friction_update_points(n, ndir, du, dtime, nprops, props, nstatv, statev, &
             traction, tangent, point_status) result(status) bind(C, name='friction_update_points')
             import :: c_double, c_int, c_int64_t

@@ -6,28 +6,50 @@
 !> on the number of threads.
 submodule(friction_mod) friction_batch
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_intptr_t, c_loc
-    use friction_anisotropy, only : orthotropy
-    use friction_law, only : law
-    use friction_law_choice, only : choose_law, law_storage, prop_alpha_n, prop_alpha_t
-    use friction_subloading_law, only : subloading_law
+    use friction_contact, only : point_open
+    use friction_lane_block, only : c_mu_0, c_r_0, lane_none, lane_subloading, lanes, &
+        n_constants
+    use friction_lane_constants, only : copy_constants, lane_plan, plan_lanes, spread_constants
     use friction_threads, only : worth_threads
     implicit none
 
-    integer, parameter :: lanes = 128         !! points of the kernel's block
     integer, parameter :: line = 8            !! numbers of a cache line
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
 
+    !> What a block's call is about: as in module friction_batch_kernel.
+    type, bind(C) :: block_task
+        integer(c_int64_t) :: stride
+        integer(c_int) :: kind, ndir, varied, options
+        real(c_double) :: dt
+    end type block_task
+
     !> What a call is about.
     type, extends(array_sizes) :: batch
-        real(wp) :: dtime                    !! [T]
-        logical :: vectors                   !! the kernel knows this law and these constants
-        real(wp) :: constants(8)             !! for the kernel
+        real(wp) :: dtime              !! [T]
+        integer(int64) :: rows         !! of `props`: 1, or one for each point
+        type(lane_plan) :: plan        !! the lanes of the law and its options
+        logical :: plain               !! the subloading law without options, in space, the same
+                                       !! constants for all: it has a kernel of its own
+        real(wp) :: constants(lanes, n_constants)   !! for all points, if they share them
     end type batch
 
     interface
         !> See module friction_batch_kernel.
-        subroutine batch_kernel(stride, du, dtime, constants, statev, traction, tangent, left, &
-            n_left) bind(C, name='stickslip_batch_kernel')
+        subroutine batch_kernel(task, constants, du, statev, traction, tangent, left, n_left) &
+            bind(C, name='stickslip_batch_kernel')
+            import :: block_task, c_double, c_int, lanes, n_constants
+            implicit none
+            type(block_task), intent(in) :: task
+            real(c_double), intent(in) :: constants(lanes, n_constants)
+            real(c_double), intent(in) :: du(task%stride, *)
+            real(c_double), intent(inout) :: statev(task%stride, *), traction(task%stride, *)
+            real(c_double), intent(inout) :: tangent(task%stride, task%ndir, *)
+            integer(c_int), intent(out) :: left(lanes), n_left
+        end subroutine batch_kernel
+
+        !> See module friction_subloading_kernel.
+        subroutine subloading_kernel(stride, du, dtime, constants, statev, traction, tangent, &
+            left, n_left) bind(C, name='stickslip_subloading_kernel')
             import :: c_double, c_int, c_int64_t, lanes
             implicit none
             integer(c_int64_t), value, intent(in) :: stride
@@ -37,34 +59,59 @@ submodule(friction_mod) friction_batch
             real(c_double), intent(inout) :: statev(stride, *), traction(stride, *)
             real(c_double), intent(inout) :: tangent(stride, 3, *)
             integer(c_int), intent(out) :: left(lanes), n_left
-        end subroutine batch_kernel
+        end subroutine subloading_kernel
     end interface
 
 contains
 
-    module subroutine friction_update_batch(du, dtime, props, statev, traction, tangent, status)
+    module subroutine update_batch_alike(du, dtime, props, statev, traction, tangent, status)
         real(wp), intent(in), contiguous :: du(:, :), props(:)
         real(wp), intent(in) :: dtime
         real(wp), intent(inout), contiguous :: statev(:, :), traction(:, :), tangent(:, :, :)
         integer, intent(out), contiguous :: status(:)
+
+        status = friction_bad_size
+        if (.not. fit(du, statev, traction, tangent, size(status, 1, int64))) return
+        call update_arrays_batch(array_sizes(size(du, 1, int64), size(du, 2), size(props), &
+            size(statev, 2)), du, dtime, 1_int64, props, statev, traction, tangent, status)
+    end subroutine update_batch_alike
+
+    module subroutine update_batch_varied(du, dtime, props, statev, traction, tangent, status)
+        real(wp), intent(in), contiguous :: du(:, :), props(:, :)
+        real(wp), intent(in) :: dtime
+        real(wp), intent(inout), contiguous :: statev(:, :), traction(:, :), tangent(:, :, :)
+        integer, intent(out), contiguous :: status(:)
         integer(int64) :: n
-        integer :: ndir
 
         n = size(du, 1, int64)
-        ndir = size(du, 2)
         status = friction_bad_size
-        if (size(statev, 1, int64) /= n .or. size(traction, 1, int64) /= n &
-            .or. size(tangent, 1, int64) /= n .or. size(status, 1, int64) /= n) return
-        if (size(traction, 2) /= ndir .or. size(tangent, 2) /= ndir &
-            .or. size(tangent, 3) /= ndir) return
-        call update_arrays_batch(array_sizes(n, ndir, size(props), size(statev, 2)), du, dtime, &
-            props, statev, traction, tangent, status)
-    end subroutine friction_update_batch
+        if (size(props, 1, int64) /= n) return
+        if (.not. fit(du, statev, traction, tangent, size(status, 1, int64))) return
+        call update_arrays_batch(array_sizes(n, size(du, 2), size(props, 2), size(statev, 2)), &
+            du, dtime, n, props, statev, traction, tangent, status)
+    end subroutine update_batch_varied
 
-    module subroutine update_arrays_batch(sizes, du, dtime, props, statev, traction, tangent, &
+    !> Do the arrays of a batch fit together?
+    pure function fit(du, statev, traction, tangent, n)
+        real(wp), intent(in), contiguous :: du(:, :), statev(:, :), traction(:, :), tangent(:, :, :)
+        integer(int64), intent(in) :: n   !! places for the status
+        logical :: fit
+        integer :: ndir
+
+        ndir = size(du, 2)
+        fit = size(du, 1, int64) == n .and. size(statev, 1, int64) == n &
+            .and. size(traction, 1, int64) == n .and. size(tangent, 1, int64) == n &
+            .and. size(traction, 2) == ndir .and. size(tangent, 2) == ndir &
+            .and. size(tangent, 3) == ndir
+    end function fit
+
+    module subroutine update_arrays_batch(sizes, du, dtime, rows, props, statev, traction, &
+        tangent, &
         status)
         type(array_sizes), intent(in) :: sizes
-        real(wp), intent(in) :: du(sizes%points, sizes%ndir), dtime, props(sizes%nprops)
+        real(wp), intent(in) :: du(sizes%points, sizes%ndir), dtime
+        integer(int64), intent(in) :: rows
+        real(wp), intent(in) :: props(rows, sizes%nprops)
         real(wp), intent(inout) :: statev(sizes%points, sizes%nstatv)
         real(wp), intent(inout) :: traction(sizes%points, sizes%ndir)
         real(wp), intent(inout), target :: tangent(sizes%points, sizes%ndir, sizes%ndir)
@@ -77,8 +124,7 @@ contains
             status = friction_bad_size
             return
         end if
-        this = batch(array_sizes=sizes, dtime=dtime, vectors=.false., constants=0.0_wp)
-        call prepare_kernel(this, props)
+        call prepare(this, sizes, dtime, rows, props)
 
         ! Blocks begin where a cache line begins, but for the first.
         head = modulo(-transfer(c_loc(tangent), 0_c_intptr_t) / 8, int(line, c_intptr_t))
@@ -108,104 +154,159 @@ contains
 
     end subroutine update_arrays_batch
 
-    !> May the kernel be used? It takes the subloading law as its authors wrote it, without
-    !> options, with constants of ordinary size.
-    pure subroutine prepare_kernel(this, props)
-        type(batch), intent(inout) :: this
-        real(wp), intent(in) :: props(this%nprops)
-        real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
+    !> Plans the lanes, by the first point whose constants are valid.
+    pure subroutine prepare(this, sizes, dtime, rows, props)
+        type(batch), intent(out) :: this
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: dtime
+        integer(int64), intent(in) :: rows
+        real(wp), intent(in) :: props(rows, sizes%nprops)
+        real(wp), parameter :: most = 1.0e20_wp
         real(wp) :: statev(statev_size), traction(3), tangent(3, 3)
-        type(law_storage), target :: storage
-        class(law), pointer :: surface
-        type(orthotropy) :: plane
+        integer(int64) :: row
         integer :: status
 
-        if (this%nstatv < statev_size) return
-        statev = 0.0_wp
-        call update_arrays(array_sizes(1, 3, this%nprops, statev_size), &
-            [0.0_wp, 0.0_wp, 0.0_wp], this%dtime, props, statev, traction, tangent, status)
+        this%array_sizes = sizes
+        this%dtime = dtime
+        this%rows = rows
+        this%plain = .false.
+        this%plan%kind = lane_none
+        if (sizes%nstatv < statev_size) return
+        do row = 1, rows
+            statev = 0.0_wp
+            call update_arrays(array_sizes(1, 3, sizes%nprops, statev_size), &
+                [0.0_wp, 0.0_wp, 0.0_wp], dtime, props(row, :), statev, traction, tangent, status)
+            if (status >= 0) exit
+        end do
         if (status < 0) return   ! point by point, they all say so
-        call choose_law(this%nprops, props, storage, surface, plane, status)
-        if (abs(plane%squeeze - 1.0_wp) > 0.0_wp) return
-        select type (surface)
-        type is (subloading_law)
-            this%constants = [props(prop_alpha_n), props(prop_alpha_t), surface%mu_s, &
-                surface%mu_k, surface%kappa, surface%xi, surface%m, surface%mu_0]
-        class default
-            return
-        end select
-        this%vectors = this%dtime < most .and. all(this%constants < most &
-            .and. (this%constants > least .or. this%constants <= 0.0_wp))
-    end subroutine prepare_kernel
+        call plan_lanes(sizes%nprops, props(row, :), rows > 1, this%plan)
+        if (.not. dtime < most) this%plan%kind = lane_none
+        if (this%plan%needs_time .and. .not. dtime > 1.0_wp / most) this%plan%kind = lane_none
+        if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%constants)
+        this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
+            .and. .not. this%plan%options
+    end subroutine prepare
 
     !> Points `first` to `last`, a block at most.
     subroutine update_range(this, first, last, du, props, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
-        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%rows, this%nprops)
         real(wp), intent(inout) :: statev(this%points, this%nstatv)
         real(wp), intent(inout) :: traction(this%points, this%ndir)
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(inout) :: status(this%points)
-        integer(c_int) :: left(lanes), n_left
+        real(wp) :: constants(lanes, n_constants)
+        integer(c_int) :: left(lanes)
         integer(int64) :: i
 
-        if (.not. this%vectors) then
+        if (last < first) return
+        if (this%plan%kind == lane_none) then
             do i = first, last
                 call update_point_of(this, i, du, props, statev, traction, tangent, status(i))
             end do
-        else if (this%ndir == 3 .and. last - first == lanes - 1) then
-            call batch_kernel(this%points, du(first, 1), this%dtime, this%constants, &
-                statev(first, 1), traction(first, 1), tangent(first, 1, 1), left, n_left)
-            if (n_left == 0) then
-                status(first:last) = friction_ok
-            else
-                call update_copies(this, first, last, du, props, left, statev, traction, tangent, &
-                    status)
-            end if
-        else if (last >= first) then
+        else if (this%rows > 1) then
+            call copy_constants(this%plan, this%rows, props, first, int(last - first) + 1, &
+                constants, left)
+            call update_lanes(this, first, last, constants, du, props, left, statev, traction, &
+                tangent, status)
+        else
             left = 0
-            call update_copies(this, first, last, du, props, left, statev, traction, tangent, &
-                status)
+            call update_lanes(this, first, last, this%constants, du, props, left, statev, &
+                traction, tangent, status)
         end if
     end subroutine update_range
 
-    !> The same through a copy, filled up to a block of three components, without the points that
-    !> the kernel leaves: those go one by one.
-    subroutine update_copies(this, first, last, du, props, left, statev, traction, tangent, status)
+    !> The same by lanes; points that they leave go one by one.
+    subroutine update_lanes(this, first, last, constants, du, props, left, statev, traction, &
+        tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
-        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%rows, this%nprops)
         integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
         real(wp), intent(inout) :: statev(this%points, this%nstatv)
         real(wp), intent(inout) :: traction(this%points, this%ndir)
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(inout) :: status(this%points)
-        real(wp) :: du_(lanes, 3), statev_(lanes, statev_size), traction_(lanes, 3), &
-            tangent_(lanes, 3, 3)
-        integer(c_int) :: more(lanes), n_left
+        integer(c_int) :: n_left
         integer(int64) :: i
+
+        status(first:last) = friction_ok
+        if (last - first == lanes - 1 .and. sum(left) == 0) then
+            call call_kernel(this, this%points, constants, du(first, 1), statev(first, 1), &
+                traction(first, 1), tangent(first, 1, 1), left, n_left)
+            if (n_left == 0) return
+        end if
+        call update_copies(this, first, last, constants, du, left, statev, traction, tangent)
+        do i = first, last
+            if (left(i - first + 1) > 0) call update_point_of(this, i, du, props, statev, &
+                traction, &
+                tangent, status(i))
+        end do
+    end subroutine update_lanes
+
+    subroutine call_kernel(this, stride, constants, du, statev, traction, tangent, left, n_left)
+        type(batch), intent(in) :: this
+        integer(int64), intent(in) :: stride   !! from one component to the next
+        real(wp), intent(in) :: constants(lanes, n_constants), du(stride, *)
+        real(wp), intent(inout) :: statev(stride, *), traction(stride, *)
+        real(wp), intent(inout) :: tangent(stride, this%ndir, *)
+        integer(c_int), intent(out) :: left(lanes), n_left
+
+        if (this%plain) then
+            call subloading_kernel(stride, du, this%dtime, [this%plan%value(:c_mu_0 - 2), &
+                this%plan%value(c_mu_0)], statev, traction, tangent, left, n_left)
+        else
+            call batch_kernel(task_of(this, stride), constants, du, statev, traction, tangent, &
+                left, n_left)
+        end if
+    end subroutine call_kernel
+
+    pure function task_of(this, stride) result(task)
+        type(batch), intent(in) :: this
+        integer(int64), intent(in) :: stride   !! from one component to the next
+        type(block_task) :: task
+
+        task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
+            merge(1_c_int, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, this%plan%options), &
+            this%dtime)
+    end function task_of
+
+    !> The same through a copy, filled up to a block, without the points that the kernel leaves.
+    subroutine update_copies(this, first, last, constants, du, left, statev, traction, tangent)
+        type(batch), intent(in) :: this
+        integer(int64), intent(in) :: first, last
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(this%points, this%ndir)
+        integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
+        real(wp), intent(inout) :: statev(this%points, this%nstatv)
+        real(wp), intent(inout) :: traction(this%points, this%ndir)
+        real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
+        real(wp) :: constants_(lanes, n_constants), du_(lanes, this%ndir)
+        real(wp) :: statev_(lanes, statev_size)
+        real(wp) :: traction_(lanes, this%ndir), tangent_(lanes, this%ndir, this%ndir)
+        integer(c_int) :: more(lanes), n_left
         integer :: count, j, k
 
         count = int(last - first) + 1
         du_ = 0.0_wp
         statev_ = 0.0_wp
-        du_(:count, :this%ndir) = du(first:last, :)
+        constants_ = constants
+        du_(:count, :) = du(first:last, :)
         statev_(:count, :) = statev(first:last, :statev_size)
-        ! In a plane the routine for one point neither uses nor keeps this component, but checks it.
-        if (this%ndir == 2) then
-            do j = 1, lanes
-                if (transfer(statev_(j, statev_u_et + 1), this%points) /= 0) left(j) = 1
-            end do
-        end if
         do
             do j = 1, lanes
-                if (left(j) == 0) cycle
+                if (left(j) == 0 .and. j <= count) cycle   ! else an open point harms nobody
+                constants_(j, :) = this%plan%value
                 du_(j, :) = 0.0_wp
                 statev_(j, :) = 0.0_wp
+                statev_(j, statev_status) = point_open
+                statev_(j, statev_mu) = this%plan%value(c_mu_0)
+                statev_(j, statev_r) = this%plan%value(c_r_0)
             end do
-            call batch_kernel(int(lanes, c_int64_t), du_, this%dtime, this%constants, statev_, &
-                traction_, tangent_, more, n_left)
+            call call_kernel(this, int(lanes, int64), constants_, du_, statev_, traction_, &
+                tangent_, more, n_left)
             if (n_left == 0) exit
             left = max(left, more)
         end do
@@ -219,12 +320,6 @@ contains
             do j = 1, this%ndir
                 call give_back(count, left, tangent_(:, j, k), tangent(first, j, k))
             end do
-        end do
-        do j = 1, count
-            i = first + j - 1
-            status(i) = friction_ok
-            if (left(j) > 0) call update_point_of(this, i, du, props, statev, traction, tangent, &
-                status(i))
         end do
     end subroutine update_copies
 
@@ -245,7 +340,7 @@ contains
     pure subroutine update_point_of(this, i, du, props, statev, traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: i
-        real(wp), intent(in) :: du(this%points, this%ndir), props(this%nprops)
+        real(wp), intent(in) :: du(this%points, this%ndir), props(this%rows, this%nprops)
         real(wp), intent(inout) :: statev(this%points, this%nstatv)
         real(wp), intent(inout) :: traction(this%points, this%ndir)
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
@@ -260,7 +355,7 @@ contains
         end do
         statev_ = statev(i, :statev_size)
         call update_arrays(array_sizes(1, this%ndir, this%nprops, statev_size), du_, this%dtime, &
-            props, statev_, traction_, tangent_, status)
+            props(min(i, this%rows), :), statev_, traction_, tangent_, status)
         if (status < 0) return
         statev(i, :statev_size) = statev_
         do k = 1, this%ndir

@@ -1,141 +1,218 @@
-!> The subloading law's update (backward Euler) of a block of contact points in vector lanes: the
-!> arithmetic of `friction_contact` and `friction_subloading_law`, written so that a compiler turns
-!> every loop into vector instructions.
+!> The update of a block of contact points in vector lanes: `friction_contact` written so that a
+!> compiler turns every loop into vector instructions, over any law that has lanes (src/lanes/).
 !>
 !> Either all points of the block are updated, or nothing is touched and `left` tells which points
 !> this kernel does not take: numbers that are not finite or beyond 1e20, states that no update
-!> leaves, gaps that close, possible snap-back, slow convergence. Each point is treated by itself:
-!> its result does not depend on its neighbours. No floating-point exception but inexact and
+!> leaves, gaps that close, several possible equilibria, slow convergence. Each point is treated by
+!> itself: its result does not depend on its neighbours. No floating-point exception but inexact and
 !> underflow.
-!>
-!> Compiled once for each vector instruction set, under other names (src/vector/): it uses nothing,
-!> so that the copies share nothing.
 module friction_batch_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_coulomb_lanes, only : rest_coulomb, slide_coulomb
+    use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_r_0, c_squeeze, &
+        lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_reciprocal, &
+        lane_slip_law, lane_static_kinetic, lane_subloading, lanes, n_constants, no_cap, &
+        rest_block, slide_block, widest
+    use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
+    use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
+        state_slip_weakening
+    use friction_static_kinetic_lanes, only : rest_static_kinetic, slide_static_kinetic, &
+        state_static_kinetic
+    use friction_subloading_exact_lanes, only : rest_subloading_exact, slide_subloading_exact
+    use friction_subloading_general_lanes, only : slide_subloading_general, &
+        state_subloading_general
+    use friction_subloading_lanes, only : rest_subloading, slide_subloading, state_subloading
     implicit none
     private
 
     public :: update_block
 
     integer, parameter :: wp = c_double
-    integer, parameter :: lanes = 128       !! points of a block: its scratch data stay in cache
-    integer, parameter :: widest = 8        !! lanes of the widest vectors
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
     real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
-    real(wp), parameter :: third = 1.0_wp / 3.0_wp
-    real(wp), parameter :: least_ratio = 1.0e-100_wp   !! of module friction_subloading_law
     real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
-    !> Constants of the law and of the increment.
-    type :: increment
-        real(wp) :: alpha_n, alpha_t    !! stiffness [F/L^3]
-        real(wp) :: mu_s, mu_k, kappa, xi, m, mu_0
-        real(wp) :: w0                  !! 1 + xi dt [-]
-        real(wp) :: forming             !! xi dt (mu_s - mu_k) [-]
-    end type increment
+    !> What a call is about.
+    type, bind(C) :: block_task
+        integer(c_int64_t) :: stride   !! distance of components, 128 or more
+        integer(c_int) :: kind         !! law
+        integer(c_int) :: ndir         !! components of du: 2 or 3
+        integer(c_int) :: varied       !! 1 where points differ in their constants, else 0
+        integer(c_int) :: options      !! 1 where a point has a shear cap or two coefficients, else
+                                       !! 0
+        real(c_double) :: dt           !! [T]
+    end type block_task
 
     !> A block with all of its slip prevented.
     type :: trial_block
-        real(wp) :: p(lanes)         !! pressure [F/L^2]
+        type(rest_block) :: rest
         real(wp) :: q1(lanes), q2(lanes)   !! elastic tangential displacement [L]
-        real(wp) :: tau(lanes)       !! tangential traction [F/L^2]
-        real(wp) :: c(lanes)         !! c of docs/theory.md, section 3 [-]
-        real(wp) :: r(lanes)         !! R at the start of the increment [-]
-        real(wp) :: slides(lanes)    !! 1 where the traction is beyond the strength, else 0
+        real(wp) :: start(lanes)     !! traction at the start, for a law that follows the path and
+                                     !! has no cap; else -1 [F/L^2]
+        integer(c_int) :: moves(lanes)   !! 1 where the traction is beyond the strength, else 0
     end type trial_block
 
-    !> What slip does to the points of a block that slide.
-    type :: slip_block
-        real(wp) :: s(lanes)         !! slip [L]
-        real(wp) :: r(lanes)         !! R at the end of the increment [-]
-        real(wp) :: log_r(lanes)     !! its logarithm
-    end type slip_block
+    !> What traction and tangent are made of.
+    type :: answer_block
+        real(wp) :: t1(lanes), t2(lanes)   !! direction of the slip; 0 where nothing slides [-]
+        real(wp) :: inverse(lanes)   !! 1/(alpha_t |q|), where it slides [L^2/F]
+        real(wp) :: lever(lanes)     !! work of the traction over slip and T_eq [-]
+        real(wp) :: squeezed(lanes)  !! how much the strength depends on the direction [-]
+        real(wp) :: share(lanes)     !! of q that stays elastic [-]
+        real(wp) :: coupling(lanes)  !! alpha_t/D of docs/theory.md, section 4; 0 in stick [-]
+        real(wp) :: d_slip(lanes)    !! d(resistance)/d(slip) [F/L^3]
+        real(wp) :: by_du_n(lanes)   !! along the slip, by the normal displacement [F/L^3]
+    end type answer_block
 
 contains
 
-    !> Updates points 1 to 128 of component-major arrays with `stride` points.
-    subroutine update_block(stride, du, dtime, constants, statev, traction, tangent, left, n_left) &
+    !> Updates points 1 to 128 of component-major arrays.
+    subroutine update_block(task, constants, du, statev, traction, tangent, left, n_left) &
         bind(C, name='stickslip_batch_kernel')
-        integer(c_int64_t), value, intent(in) :: stride   !! distance of components, 128 or more
-        real(wp), intent(in) :: du(stride, *)             !! 3 components [L]
-        real(wp), value, intent(in) :: dtime              !! [T]
-        real(wp), intent(in) :: constants(8)   !! alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0,
-                                               !! valid; those that are not zero between 1e-20 and
-                                               !! 1e20
-        real(wp), intent(inout) :: statev(stride, *)      !! 8 components
-        real(wp), intent(inout) :: traction(stride, *)    !! 3 components [F/L^2]
-        real(wp), intent(inout) :: tangent(stride, 3, *)  !! 3 x 3 components [F/L^3]
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)   !! of each point, valid
+        real(wp), intent(in) :: du(task%stride, *)              !! 2 or 3 components [L]
+        real(wp), intent(inout) :: statev(task%stride, *)       !! 8 components
+        real(wp), intent(inout) :: traction(task%stride, *)     !! 2 or 3 components [F/L^2]
+        real(wp), intent(inout) :: tangent(task%stride, task%ndir, *)  !! [F/L^3]
         integer(c_int), intent(out) :: left(lanes)   !! 1 for a point that is not taken, else 0
         integer(c_int), intent(out) :: n_left        !! how many; unless 0, nothing is touched
-        type(increment) :: inc
         type(trial_block) :: trial
-        type(slip_block) :: slid
+        type(slide_block) :: slid
+        integer :: n_slides
 
-        inc = increment(alpha_n=constants(1), alpha_t=constants(2), mu_s=constants(3), &
-            mu_k=constants(4), kappa=constants(5), xi=constants(6), m=constants(7), &
-            mu_0=constants(8), w0=1.0_wp + constants(6) * dtime, &
-            forming=constants(6) * dtime * (constants(3) - constants(4)))
-        call prevent_slip(stride, inc, du, statev, trial, left, n_left)
+        call prevent_slip(task, constants, du, statev, trial, left, n_slides, n_left)
         if (n_left > 0) return
-        call let_slip(inc, trial, slid, left, n_left)
+        call allow_slip(task, constants, trial, n_slides, slid, left, n_left)
         if (n_left > 0) return
-        call finish(stride, inc, du, trial, slid, statev, traction, tangent)
+        call finish(task, constants, du, trial, slid, statev, traction, tangent)
     end subroutine update_block
 
     !> The trial state, and the points that the kernel leaves.
-    subroutine prevent_slip(stride, inc, du, statev, trial, left, n_left)
-        integer(c_int64_t), intent(in) :: stride
-        type(increment), intent(in) :: inc
-        real(wp), intent(in) :: du(stride, 3), statev(stride, 8)
+    subroutine prevent_slip(task, constants, du, statev, trial, left, n_slides, n_left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
         type(trial_block), intent(out) :: trial
         integer(c_int), intent(out) :: left(lanes), n_left
-        integer(c_int64_t) :: fine
-        real(wp) :: others, phase, u_n, mu, slip, dissipated, valid, strength, fall, iw0
+        integer, intent(out) :: n_slides
+        real(wp) :: valid(lanes), strength
         integer :: i
 
-        iw0 = 1.0_wp / inc%w0
+        call load(task, constants, du, statev, trial, valid)
+        select case (task%kind)
+        case (lane_subloading, lane_cotangent, lane_reciprocal)
+            call rest_subloading(constants, task%dt, trial%rest)
+        case (lane_exact_rate)
+            call rest_subloading_exact(constants, task%dt, trial%rest)
+            call leave_reloading(task, constants, statev, trial, valid)
+        case (lane_coulomb)
+            call rest_coulomb(constants, trial%rest)
+        case (lane_static_kinetic)
+            call rest_static_kinetic(constants, trial%rest)
+        case (lane_ageing, lane_slip_law)
+            call rest_rate_state(task%kind == lane_ageing, task%dt, trial%rest)
+        case default
+            call rest_slip_weakening(constants, trial%rest)
+        end select
+        n_slides = 0
         n_left = 0
         do i = 1, lanes
-            others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(statev(i, 5)) &
-                + abs(statev(i, 6)) + abs(statev(i, 7)) + abs(statev(i, 8))
-            fine = below_largest(others + abs(statev(i, 1)) + abs(du(i, 1)) + abs(du(i, 2)) &
-                + abs(du(i, 3)))
-            others = zero_unless(fine, others)
-            phase = zero_unless(fine, statev(i, 1))
-            u_n = zero_unless(fine, statev(i, 2))
-            trial%q1(i) = zero_unless(fine, statev(i, 3) + du(i, 2))
-            trial%q2(i) = zero_unless(fine, statev(i, 4) + du(i, 3))
-            mu = zero_unless(fine, statev(i, 5))
-            trial%r(i) = zero_unless(fine, statev(i, 6))
-            slip = zero_unless(fine, statev(i, 7))
-            dissipated = zero_unless(fine, statev(i, 8))
-
-            if (phase <= 0.0_wp) mu = inc%mu_0
-            ! valid < 0 tells a number out of its range
-            valid = min(inc%mu_s - mu, mu - inc%mu_k, trial%r(i), 1.0_wp - trial%r(i), slip, &
-                dissipated, &
-                -abs(phase * (phase - 1.0_wp) * (phase - 2.0_wp) * (phase - 3.0_wp)))
-            if (phase <= 0.0_wp) valid = min(valid, -others)
-            if (fine == 0) valid = -1.0_wp
-
-            trial%p(i) = max(0.0_wp, -inc%alpha_n * zero_unless(fine, u_n + du(i, 1)))
-            if (trial%p(i) > 0.0_wp) valid = min(valid, -u_n, trial%p(i) - smallest)
-            trial%tau(i) = inc%alpha_t * sqrt(trial%q1(i)**2 + trial%q2(i)**2)
-            trial%c(i) = (mu - inc%mu_k) + inc%forming
-            trial%slides(i) = 0.0_wp
-            strength = max(trial%r(i), least_ratio) * (inc%mu_k + trial%c(i) * iw0) * trial%p(i)
-            if (trial%tau(i) > strength * (1.0_wp + verge)) trial%slides(i) = 1.0_wp
-            if (trial%p(i) <= 0.0_wp) trial%slides(i) = 0.0_wp
-            fall = trial%p(i) * inc%kappa * trial%c(i)
-            if (inc%alpha_t * inc%w0**2 <= fall) valid = min(valid, -trial%slides(i))
-            if (trial%p(i) * (abs(trial%q1(i)) + abs(trial%q2(i))) > 0.0_wp) valid = min(valid, &
-                trial%tau(i) - smallest)
+            trial%moves(i) = 0
+            strength = min(trial%rest%strength(i), constants(i, c_cap))
+            if (trial%rest%traction(i) > strength * (1.0_wp + verge)) trial%moves(i) = 1
+            n_slides = n_slides + trial%moves(i)
             left(i) = 0
-            if (valid < 0.0_wp) left(i) = 1
+            if (min(valid(i), trial%rest%valid(i)) < 0.0_wp) left(i) = 1
             n_left = n_left + left(i)
         end do
     end subroutine prevent_slip
+
+    !> The points at the start of the increment, and the elastic traction at its end.
+    subroutine load(task, constants, du, statev, trial, valid)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
+        type(trial_block), intent(inout) :: trial
+        real(wp), intent(out) :: valid(lanes)   !! below 0 tells a number out of its range
+        integer(c_int64_t) :: fine, in_space
+        real(wp) :: du_3, others, phase, u_n, q1, q2, p, traction, mu, r, margin
+        integer :: i
+
+        in_space = merge(-1_c_int64_t, 0_c_int64_t, task%ndir == 3)
+        do i = 1, lanes
+            du_3 = zero_unless(in_space, du(i, task%ndir))
+            others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(statev(i, 5)) &
+                + abs(statev(i, 6)) + abs(statev(i, 7)) + abs(statev(i, 8))
+            fine = below_largest(others + abs(statev(i, 1)) + abs(du(i, 1)) + abs(du(i, 2)) &
+                + abs(du_3))
+            others = zero_unless(fine, others)
+            phase = zero_unless(fine, statev(i, 1))
+            u_n = zero_unless(fine, statev(i, 2))
+            q1 = zero_unless(fine, statev(i, 3) + du(i, 2))
+            q2 = zero_unless(iand(fine, in_space), statev(i, 4) + du_3)   ! checked in a plane, too
+            mu = zero_unless(fine, statev(i, 5))
+            r = zero_unless(fine, statev(i, 6))
+            margin = min(zero_unless(fine, statev(i, 7)), zero_unless(fine, statev(i, 8)), &
+                -abs(phase * (phase - 1.0_wp) * (phase - 2.0_wp) * (phase - 3.0_wp)))
+            if (phase <= 0.0_wp) then
+                margin = min(margin, -others)
+                mu = constants(i, c_mu_0)
+                r = constants(i, c_r_0)
+            end if
+            if (fine == 0) margin = -1.0_wp
+
+            p = max(0.0_wp, -constants(i, c_alpha_n) * zero_unless(fine, u_n + du(i, 1)))
+            if (p > 0.0_wp) then
+                margin = min(margin, -u_n, p - smallest)
+            else
+                q1 = 0.0_wp
+                q2 = 0.0_wp
+            end if
+            traction = constants(i, c_alpha_t) * sqrt(q1**2 + (constants(i, c_squeeze) * q2)**2)
+            if (abs(q1) + abs(q2) > 0.0_wp) margin = min(margin, traction - smallest)
+            valid(i) = margin
+            trial%rest%mu(i) = mu
+            trial%rest%r(i) = r
+            trial%rest%pressure(i) = p
+            trial%rest%traction(i) = traction
+            trial%q1(i) = q1
+            trial%q2(i) = q2
+            trial%start(i) = -1.0_wp
+        end do
+    end subroutine load
+
+    !> A law that follows the path, where the increment unloads before it loads again (module
+    !> `friction_reloading`): points of which that is true are left.
+    subroutine leave_reloading(task, constants, statev, trial, valid)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: statev(task%stride, 8)
+        type(trial_block), intent(inout) :: trial
+        real(wp), intent(inout) :: valid(lanes)
+        integer(c_int64_t) :: fine
+        real(wp) :: u1, u2, q2, length, along, reach
+        integer :: i
+
+        do i = 1, lanes
+            fine = below_largest(abs(statev(i, 3)) + abs(statev(i, 4)))
+            u1 = zero_unless(fine, statev(i, 3))
+            u2 = constants(i, c_squeeze) * zero_unless(fine, statev(i, 4))
+            if (task%ndir == 2) u2 = 0.0_wp
+            q2 = constants(i, c_squeeze) * trial%q2(i)
+            length = sqrt(u1**2 + u2**2)
+            along = u1 * trial%q1(i) + u2 * q2
+            reach = trial%rest%strength(i) / constants(i, c_alpha_t)
+            if (constants(i, c_cap) >= no_cap) then
+                trial%start(i) = constants(i, c_alpha_t) * length
+                if (max(along - reach * length, reach * along - (trial%q1(i)**2 + q2**2) * &
+                    length) < 0.0_wp) then
+                    valid(i) = -1.0_wp
+                end if
+            end if
+        end do
+    end subroutine leave_reloading
 
     !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
     !> silent where a comparison with NaN raises an exception.
@@ -154,226 +231,397 @@ contains
         kept = transfer(iand(transfer(x, mask), mask), x)
     end function zero_unless
 
-    !> Solves for slip and R of the points that slide, packed together.
-    subroutine let_slip(inc, trial, slid, left, n_left)
-        type(increment), intent(in) :: inc
+    !> Slip of the points that slide.
+    subroutine allow_slip(task, constants, trial, n_slides, slid, left, n_left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
-        type(slip_block), intent(out) :: slid
+        integer, intent(in) :: n_slides
+        type(slide_block), intent(out) :: slid   !! of no account where nothing slides
         integer(c_int), intent(inout) :: left(lanes)
         integer(c_int), intent(out) :: n_left
-        type(slip_block) :: packed
-        real(wp), dimension(lanes) :: p, c, tau, r_n, moves
-        integer :: place(lanes), n_slides, n_solved, i
+        integer, parameter :: many = (3 * lanes) / 4   !! packing takes longer than to fill gaps
 
-        n_slides = 0
-        do i = 1, lanes
-            place(n_slides + 1) = i
-            n_slides = n_slides + int(trial%slides(i))
-        end do
-        n_solved = min(lanes, iand(n_slides + widest - 1, not(widest - 1)))
-        do i = n_slides + 1, n_solved
-            place(i) = place(1)   ! whole vectors: the first one fills the last
-        end do
-        do i = 1, n_solved
-            p(i) = trial%p(place(i))
-            c(i) = trial%c(place(i))
-            tau(i) = trial%tau(place(i))
-            r_n(i) = trial%r(place(i))
-        end do
-        call start(n_solved, inc, p, c, tau, r_n, packed)
-        call solve(n_solved, inc, p, c, tau, r_n, packed, moves)
+        n_left = 0
+        if (n_slides <= many .or. task%varied > 0) call clear(slid)
+        if (n_slides == 0) return
+        if (n_slides == lanes .or. (n_slides > many .and. task%varied == 0)) then
+            call slide_all(task, constants, trial, slid, left)
+        else
+            call slide_packed(task, constants, trial, n_slides, slid, left)
+        end if
+        n_left = sum(left)
+    end subroutine allow_slip
 
-        slid%s = 0.0_wp
-        slid%r = 1.0_wp
-        slid%log_r = 0.0_wp
-        do i = 1, n_slides
-            slid%s(place(i)) = packed%s(i)
-            slid%r(place(i)) = packed%r(i)
-            slid%log_r(place(i)) = packed%log_r(i)
-        end do
-        n_left = int(sum(moves(:n_slides)), c_int)
-        if (n_left == 0) return
-        do i = 1, n_slides
-            left(place(i)) = int(moves(i), c_int)
-        end do
-    end subroutine let_slip
+    pure subroutine clear(slid)
+        type(slide_block), intent(inout) :: slid
 
-    !> First slip and R: `start_far` of module friction_subloading_law, with one division for the
-    !> quotients that can share it.
-    subroutine start(n, inc, p, c, tau, r_n, packed)
-        integer, intent(in) :: n
-        type(increment), intent(in) :: inc
-        real(wp), dimension(lanes), intent(in) :: p, c, tau, r_n   !! of the trial
-        type(slip_block), intent(inout) :: packed
-        real(wp) :: iw0, full, e_n, z, rate, excess, b, root, above, below, gain
-        integer :: i
+        slid%slip = 0.0_wp
+        slid%mu_end = 0.0_wp
+        slid%r_end = 0.0_wp
+        slid%resistance = 0.0_wp
+        slid%d_slip = 0.0_wp
+        slid%d_pressure = 0.0_wp
+    end subroutine clear
 
-        iw0 = 1.0_wp / inc%w0
-        do i = 1, n
-            full = (inc%mu_k + c(i) * iw0) * p(i)
-            e_n = 1.0_wp - r_n(i)
-            z = 3.0_wp * (1.0_wp + r_n(i))**2 - 1.8_wp * e_n**2
-            rate = (2.0_wp * inc%m) * (z + e_n**2) / ((1.0_wp + r_n(i)) * z)
-            excess = tau(i) - r_n(i) * full
-            b = 0.5_wp * (inc%alpha_t + rate * (e_n * full - excess))
-            root = sqrt(b**2 + inc%alpha_t * rate * excess)
-            above = root - b
-            below = inc%alpha_t * rate
-            if (b > 0.0_wp) then
-                above = excess
-                below = root + b
-            end if
-            gain = below + rate * above
-            z = 1.0_wp / (gain * below)
-            packed%s(i) = above * gain * z
-            packed%r(i) = (r_n(i) * below + rate * above) * below * z
-            packed%log_r(i) = e_n * below**2 * z   ! 1 - R, for now
-            if (packed%r(i) < 0.5_wp) packed%log_r(i) = 1.0_wp - packed%r(i)
-        end do
-    end subroutine start
-
-    !> Slip and R by Chebyshev's method, as `solve` of module friction_subloading_law.
-    subroutine solve(n, inc, p, c, tau, r_n, packed, moves)
-        integer, intent(in) :: n
-        type(increment), intent(in) :: inc
-        real(wp), dimension(lanes), intent(in) :: p, c, tau, r_n   !! of the trial
-        type(slip_block), intent(inout) :: packed   !! in: slip, R and, as log_r, 1 - R
-        real(wp), intent(out) :: moves(lanes)   !! 1 for a point that has not converged, else 0
-        real(wp), parameter :: small_step = 1.0e-5_wp
-        integer, parameter :: max_iterations = 7
-        real(wp) :: e(lanes), log_r_(lanes), still, ms, w, iw, gain, ir, shared, slack, log_r, &
-            r_rate, misfit, mu, mu_rate, d, ds, dr, bend_s, bend_r, z, r_next, s_next
-        integer :: i, iteration
-
-        do i = 1, n
-            e(i) = packed%log_r(i)
-            moves(i) = 1.0_wp
-        end do
-        do iteration = 1, max_iterations
-            still = 0.0_wp   ! logarithms apart: their call needs the registers
-            do i = 1, n
-                log_r_(i) = log(packed%r(i))
-            end do
-            do i = 1, n
-                ms = inc%m * packed%s(i)
-                w = inc%w0 + inc%kappa * packed%s(i)
-                gain = packed%r(i) + ms
-                shared = 1.0_wp / (w * gain * packed%r(i))
-                iw = gain * packed%r(i) * shared
-                ir = w * gain * shared
-                gain = w * packed%r(i) * shared
-                slack = (1.0_wp - packed%r(i)) - e(i)
-                log_r = log_r_(i) + slack
-                r_rate = -inc%m * log_r * packed%r(i) * gain
-                misfit = ((packed%r(i) - r_n(i)) + slack + ms * log_r) * packed%r(i) * gain
-                mu = inc%mu_k + c(i) * iw
-                mu_rate = -inc%kappa * c(i) * iw**2
-                d = 1.0_wp / (inc%alpha_t + p(i) * (packed%r(i) * mu_rate + mu * r_rate))
-                ds = (tau(i) - inc%alpha_t * packed%s(i) - p(i) * mu * (packed%r(i) - misfit)) * d
-                dr = r_rate * ds - misfit
-                bend_r = gain * dr * (inc%m * ds - 0.5_wp * ms * dr * ir)
-                bend_s = -p(i) * (mu_rate * ds * (dr - inc%kappa * iw * packed%r(i) * ds) &
-                    - mu * bend_r) * d
-                bend_r = r_rate * bend_s - bend_r
-                if (max(abs(bend_s) - 0.5_wp * abs(ds), abs(bend_r) - 0.5_wp * abs(dr)) &
-                    > 0.0_wp) then
-                    bend_s = 0.0_wp
-                    bend_r = 0.0_wp
-                end if
-                ! a point that has converged stays where it is
-                ds = (ds + bend_s) * moves(i)
-                dr = (dr + bend_r) * moves(i)
-                z = dr * ir
-                log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * third))
-                if (moves(i) > 0.0_wp) packed%log_r(i) = log_r
-                if (max(inc%m * abs(ds) - small_step * (packed%r(i) + ms), &
-                    inc%kappa * abs(ds) - small_step * w, &
-                    inc%alpha_t * abs(ds) - small_step * tau(i), &
-                    abs(dr) - small_step * min(packed%r(i), e(i))) <= 0.0_wp) moves(i) = 0.0_wp
-                still = max(still, moves(i))
-                s_next = max(packed%s(i) + ds, 0.05_wp * packed%s(i))
-                r_next = max(packed%r(i) + dr, 0.05_wp * packed%r(i))
-                e(i) = max(e(i) - dr, 0.05_wp * e(i))
-                packed%s(i) = s_next
-                packed%r(i) = 1.0_wp - e(i)
-                if (r_next < 0.5_wp) then
-                    packed%r(i) = r_next
-                    e(i) = 1.0_wp - r_next
-                end if
-            end do
-            if (still <= 0.0_wp) return
-        end do
-    end subroutine solve
-
-    !> State, traction and tangent at the end of the increment. Two loops, since a cache holds few
-    !> lines whose addresses differ by a power of two.
-    subroutine finish(stride, inc, du, trial, slid, statev, traction, tangent)
-        integer(c_int64_t), intent(in) :: stride
-        type(increment), intent(in) :: inc
-        real(wp), intent(in) :: du(stride, 3)
+    !> All points of the block; those that do not slide take the numbers of one that does.
+    subroutine slide_all(task, constants, trial, slid, left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
-        type(slip_block), intent(in) :: slid
-        real(wp), intent(inout) :: statev(stride, 8), traction(stride, 3), tangent(stride, 3, 3)
-        real(wp), dimension(lanes) :: share, along, coupling, direction, closed
-        real(wp) :: w, iw, gain, shared, mu, full, d_slip, stiffness, below, r, t1, t2, across
+        type(slide_block), intent(inout) :: slid
+        integer(c_int), intent(inout) :: left(lanes)
+        real(wp) :: own_strength(lanes)
+        integer :: i, first
+
+        do first = 1, lanes
+            if (trial%moves(first) > 0) exit
+        end do
+        slid%n = lanes
+        do i = 1, lanes
+            slid%trial(i) = trial%rest%traction(first)
+            slid%pressure(i) = trial%rest%pressure(first)
+            slid%mu(i) = trial%rest%mu(first)
+            slid%r(i) = trial%rest%r(first)
+            slid%mu_rest(i) = trial%rest%mu_rest(first)
+            own_strength(i) = trial%rest%strength(first)
+            slid%stiffness(i) = constants(i, c_alpha_t)
+            if (trial%moves(i) > 0) then
+                slid%trial(i) = trial%rest%traction(i)
+                slid%pressure(i) = trial%rest%pressure(i)
+                slid%mu(i) = trial%rest%mu(i)
+                slid%r(i) = trial%rest%r(i)
+                slid%mu_rest(i) = trial%rest%mu_rest(i)
+                own_strength(i) = trial%rest%strength(i)
+            end if
+        end do
+        if (task%options > 0) then
+            do i = 1, lanes
+                slid%stiffness(i) = trial%rest%traction(first) / sqrt(trial%q1(first)**2 &
+                    + trial%q2(first)**2)
+                if (trial%moves(i) > 0) then
+                    slid%stiffness(i) = trial%rest%traction(i) / sqrt(trial%q1(i)**2 + &
+                        trial%q2(i)**2)
+                end if
+            end do
+        end if
+        call slide(task, constants, own_strength, slid)
+        do i = 1, lanes
+            if (slid%left(i) > 0.0_wp) left(i) = trial%moves(i)
+        end do
+    end subroutine slide_all
+
+    !> The points that slide, packed together.
+    subroutine slide_packed(task, constants, trial, n_slides, slid, left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(trial_block), intent(in) :: trial
+        integer, intent(in) :: n_slides
+        type(slide_block), intent(inout) :: slid
+        integer(c_int), intent(inout) :: left(lanes)
+        type(slide_block) :: packed
+        real(wp) :: packed_constants(lanes, n_constants), own_strength(lanes)
+        integer :: place(lanes), n, i, k
+
+        n = 0
+        do i = 1, lanes
+            place(n + 1) = i
+            n = n + trial%moves(i)
+        end do
+        packed%n = min(lanes, iand(n_slides + widest - 1, not(widest - 1)))
+        place(n_slides + 1:packed%n) = place(1)   ! whole vectors: the first one fills the last
+        do i = 1, packed%n
+            packed%trial(i) = trial%rest%traction(place(i))
+            packed%pressure(i) = trial%rest%pressure(place(i))
+            packed%mu(i) = trial%rest%mu(place(i))
+            packed%r(i) = trial%rest%r(place(i))
+            packed%mu_rest(i) = trial%rest%mu_rest(place(i))
+            packed%stiffness(i) = constants(place(i), c_alpha_t)
+        end do
+        if (task%options > 0) then
+            do i = 1, packed%n
+                own_strength(i) = trial%rest%strength(place(i))
+                packed%stiffness(i) = packed%trial(i) / sqrt(trial%q1(place(i))**2 &
+                    + trial%q2(place(i))**2)
+            end do
+        end if
+        if (task%varied > 0) then
+            do k = 1, n_constants
+                do i = 1, packed%n
+                    packed_constants(i, k) = constants(place(i), k)
+                end do
+            end do
+            call slide(task, packed_constants, own_strength, packed)
+        else
+            call slide(task, constants, own_strength, packed)
+        end if
+        call unpack(n_slides, place, packed, slid, left)
+    end subroutine slide_packed
+
+    !> Results of packed points, back in their places.
+    pure subroutine unpack(n, place, packed, slid, left)
+        integer, intent(in) :: n, place(lanes)
+        type(slide_block), intent(in) :: packed
+        type(slide_block), intent(inout) :: slid
+        integer(c_int), intent(inout) :: left(lanes)
+        integer :: i
+
+        do i = 1, n
+            slid%slip(place(i)) = packed%slip(i)
+            slid%mu_end(place(i)) = packed%mu_end(i)
+            slid%r_end(place(i)) = packed%r_end(i)
+            slid%resistance(place(i)) = packed%resistance(i)
+            slid%d_slip(place(i)) = packed%d_slip(i)
+            slid%d_pressure(place(i)) = packed%d_pressure(i)
+        end do
+        if (maxval(packed%left(:n)) <= 0.0_wp) return
+        do i = 1, n
+            if (packed%left(i) > 0.0_wp) left(place(i)) = 1
+        end do
+    end subroutine unpack
+
+    !> The first equilibrium under the law, and under its shear cap. Where the law has one
+    !> equilibrium at most, the cap holds if and only if that is at less slip than takes the spring
+    !> down to the cap, or if the law does not let the surface slide at all.
+    subroutine slide(task, constants, own_strength, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: own_strength(lanes)   !! of the law without the cap [F/L^2]
+        type(slide_block), intent(inout) :: block
+        real(wp), dimension(lanes) :: trial, held
+        real(wp) :: slip, near, verge_of_cap
+        integer :: i
+
+        if (task%options == 0) then
+            call slide_by_law(task, constants, block)
+            return
+        end if
+        do i = 1, block%n
+            trial(i) = block%trial(i)
+            held(i) = 0.0_wp
+            if (trial(i) <= own_strength(i) * (1.0_wp + verge)) held(i) = 1.0_wp
+            if (held(i) > 0.0_wp) block%trial(i) = 2.0_wp * own_strength(i)   ! of no account
+        end do
+        call slide_by_law(task, constants, block)
+        ! Round-off decides whether the cap holds; or it is all of a slip whose logarithm counts.
+        near = 4.0_wp * verge
+        if (task%kind == lane_ageing .or. task%kind == lane_slip_law) near = 1.0e-3_wp
+        do i = 1, block%n
+            block%trial(i) = trial(i)
+            slip = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
+            if (block%slip(i) < slip) held(i) = 1.0_wp
+            verge_of_cap = min(abs(block%resistance(i) - constants(i, c_cap)), abs(trial(i) &
+                - constants(i, c_cap))) - near * constants(i, c_cap)
+            if (verge_of_cap <= 0.0_wp) block%left(i) = 1.0_wp
+            if (held(i) > 0.0_wp) block%slip(i) = slip
+        end do
+        if (any(held(:block%n) > 0.0_wp)) call hold_at_cap(task, constants, held, block)
+    end subroutine slide
+
+    subroutine slide_by_law(task, constants, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(slide_block), intent(inout) :: block
+
+        select case (task%kind)
+        case (lane_subloading)
+            call slide_subloading(constants, task%dt, block)
+        case (lane_exact_rate)
+            call slide_subloading_exact(constants, task%dt, block)
+        case (lane_cotangent, lane_reciprocal)
+            call slide_subloading_general(constants, task%kind == lane_cotangent, task%dt, block)
+        case (lane_coulomb)
+            call slide_coulomb(constants, block)
+        case (lane_static_kinetic)
+            call slide_static_kinetic(constants, task%dt, block)
+        case (lane_ageing, lane_slip_law)
+            call slide_rate_state(constants, task%kind == lane_ageing, task%dt, block)
+        case default
+            call slide_slip_weakening(constants, block)
+        end select
+    end subroutine slide_by_law
+
+    !> Where the cap holds: the law's variables follow the slip.
+    subroutine hold_at_cap(task, constants, held, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: held(lanes)   !! 1 where it does, else 0
+        type(slide_block), intent(inout) :: block
+        type(slide_block) :: copy
+        integer :: i
+
+        copy = block
+        select case (task%kind)
+        case (lane_subloading)
+            call state_subloading(constants, task%dt, copy)
+        case (lane_exact_rate, lane_ageing, lane_slip_law)
+            copy%left = 1.0_wp   ! one by one
+        case (lane_cotangent, lane_reciprocal)
+            call state_subloading_general(constants, task%kind == lane_cotangent, task%dt, copy)
+        case (lane_coulomb)
+            continue   ! has no variables
+        case (lane_static_kinetic)
+            call state_static_kinetic(constants, task%dt, copy)
+        case default
+            call state_slip_weakening(constants, copy)
+        end select
+        do i = 1, block%n
+            if (held(i) > 0.0_wp) then
+                block%mu_end(i) = copy%mu_end(i)
+                block%r_end(i) = copy%r_end(i)
+                block%resistance(i) = constants(i, c_cap)
+                block%d_slip(i) = 0.0_wp
+                block%d_pressure(i) = 0.0_wp
+                block%left(i) = max(block%left(i), copy%left(i))
+            end if
+        end do
+    end subroutine hold_at_cap
+
+    !> State, traction and tangent at the end of the increment. Loops of few arrays each, since a
+    !> cache holds few lines whose addresses differ by a power of two.
+    subroutine finish(task, constants, du, trial, slid, statev, traction, tangent)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir)
+        type(trial_block), intent(in) :: trial
+        type(slide_block), intent(in) :: slid
+        real(wp), intent(inout) :: statev(task%stride, 8), traction(task%stride, task%ndir)
+        real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
+        type(answer_block) :: answer
+        real(wp) :: closed, mean, mu, r, slip, share, resistance, d_slip, d_pressure, moves
+        integer :: i
+
+        call find_direction(constants, trial, slid, answer)
+        if (task%options > 0) call turn_direction(constants, trial, slid, answer)
+        !GCC$ ivdep
+        do i = 1, lanes
+            moves = 0.0_wp
+            slip = 0.0_wp
+            resistance = 0.0_wp
+            d_slip = 0.0_wp
+            d_pressure = 0.0_wp
+            mu = trial%rest%mu_rest(i)
+            r = trial%rest%r_rest(i)
+            closed = 0.0_wp
+            if (trial%rest%pressure(i) > 0.0_wp) closed = 1.0_wp
+            share = closed
+            if (trial%moves(i) > 0) then
+                moves = 1.0_wp
+                slip = slid%slip(i)
+                resistance = slid%resistance(i)
+                d_slip = slid%d_slip(i)
+                d_pressure = slid%d_pressure(i)
+                mu = slid%mu_end(i)
+                r = slid%r_end(i)
+                share = resistance * answer%lever(i) * answer%inverse(i)
+            end if
+            answer%share(i) = share
+            statev(i, 5) = mu
+            statev(i, 6) = r
+            answer%d_slip(i) = d_slip
+            answer%by_du_n(i) = -constants(i, c_alpha_n) * answer%coupling(i) * d_pressure
+            statev(i, 1) = 3.0_wp - 2.0_wp * closed + moves
+            statev(i, 2) = statev(i, 2) + du(i, 1)
+            statev(i, 3) = share * trial%q1(i)
+            statev(i, 4) = share * trial%q2(i)
+            statev(i, 7) = statev(i, 7) + slip
+            mean = resistance
+            if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
+            statev(i, 8) = statev(i, 8) + mean * slip * answer%lever(i)
+        end do
+        call write_answer(task, constants, trial, answer, traction, tangent)
+    end subroutine finish
+
+    !> Direction and coupling of an isotropic surface. Quotients of all points, though only those
+    !> that slide need them: a quotient under a condition would be one of zeros for the others.
+    pure subroutine find_direction(constants, trial, slid, answer)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(trial_block), intent(in) :: trial
+        type(slide_block), intent(in) :: slid
+        type(answer_block), intent(out) :: answer
+        real(wp) :: force, total, moves, shared
+        integer :: i
+
+        do i = 1, lanes
+            force = max(trial%rest%traction(i), least)
+            total = max(constants(i, c_alpha_t) + slid%d_slip(i), epsilon(1.0_wp) &
+                * constants(i, c_alpha_t))
+            shared = 1.0_wp / (force * total)   ! one division for two
+            moves = merge(constants(i, c_alpha_t), 0.0_wp, trial%moves(i) > 0)
+            answer%inverse(i) = total * shared
+            answer%coupling(i) = moves * force * shared
+            answer%t1(i) = trial%q1(i) * (moves * answer%inverse(i))
+            answer%t2(i) = trial%q2(i) * (moves * answer%inverse(i))
+            answer%lever(i) = 1.0_wp
+            answer%squeezed(i) = 0.0_wp
+        end do
+    end subroutine find_direction
+
+    !> The same of a surface with two friction coefficients that slides along the trial traction.
+    pure subroutine turn_direction(constants, trial, slid, answer)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(trial_block), intent(in) :: trial
+        type(slide_block), intent(in) :: slid
+        type(answer_block), intent(inout) :: answer
+        real(wp) :: length, force, stiffness, moves
+        integer :: i
+
+        do i = 1, lanes
+            length = max(sqrt(trial%q1(i)**2 + trial%q2(i)**2), least)
+            force = max(trial%rest%traction(i), constants(i, c_alpha_t) * least)
+            stiffness = force / length   ! fall of T_eq with slip
+            moves = merge(1.0_wp, 0.0_wp, trial%moves(i) > 0)
+            answer%t1(i) = moves * trial%q1(i) / length
+            answer%t2(i) = moves * trial%q2(i) / length
+            answer%lever(i) = constants(i, c_alpha_t) * length / force
+            answer%inverse(i) = 1.0_wp / (constants(i, c_alpha_t) * length)
+            answer%squeezed(i) = moves * (constants(i, c_squeeze)**2 - 1.0_wp) * answer%lever(i)
+            answer%coupling(i) = moves * constants(i, c_alpha_t) / max(stiffness &
+                + slid%d_slip(i), epsilon(1.0_wp) * stiffness)
+        end do
+    end subroutine turn_direction
+
+    subroutine write_answer(task, constants, trial, answer, traction, tangent)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(trial_block), intent(in) :: trial
+        type(answer_block), intent(in) :: answer
+        real(wp), intent(inout) :: traction(task%stride, task%ndir)
+        real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
+        real(wp) :: t1, t2, across, turn, pull_1, pull_2
         integer :: i
 
         !GCC$ ivdep
         do i = 1, lanes
-            closed(i) = 0.0_wp
-            if (trial%p(i) > 0.0_wp) closed(i) = 1.0_wp
-            w = inc%w0 + inc%kappa * slid%s(i)
-            gain = slid%r(i) + inc%m * slid%s(i)
-            shared = 1.0_wp / (w * gain)
-            iw = gain * shared
-            mu = inc%mu_k + trial%c(i) * iw
-            full = mu * trial%p(i)
-            d_slip = -trial%p(i) * slid%r(i) * (mu * inc%m * slid%log_r(i) * w * shared &
-                + inc%kappa * trial%c(i) * iw**2)
-            stiffness = max(inc%alpha_t + d_slip, epsilon(1.0_wp) * inc%alpha_t)
-            ! Quotients of all points, though each needs only one of them: none may divide by zero.
-            below = max(full, least)
-            if (trial%slides(i) > 0.0_wp) below = max(trial%tau(i) * stiffness, least)
-            below = 1.0_wp / below
-            r = min(closed(i) * trial%tau(i) * below, 1.0_wp)
-            share(i) = closed(i)
-            along(i) = inc%alpha_t * closed(i)
-            coupling(i) = 0.0_wp
-            direction(i) = 0.0_wp
-            if (trial%slides(i) > 0.0_wp) then
-                r = min(slid%r(i), 1.0_wp)
-                direction(i) = inc%alpha_t * stiffness * below
-                share(i) = slid%r(i) * full * stiffness * below
-                along(i) = inc%alpha_t * trial%tau(i) * below * d_slip
-                coupling(i) = -inc%alpha_n * inc%alpha_t * trial%tau(i) * below * slid%r(i) * mu
-            end if
-            statev(i, 1) = 3.0_wp - 2.0_wp * closed(i) + trial%slides(i)
-            statev(i, 2) = statev(i, 2) + du(i, 1)
-            statev(i, 3) = share(i) * trial%q1(i)
-            statev(i, 4) = share(i) * trial%q2(i)
-            statev(i, 5) = min(max(mu, inc%mu_k), inc%mu_s)
-            statev(i, 6) = r
-            statev(i, 7) = statev(i, 7) + slid%s(i)
-            statev(i, 8) = statev(i, 8) + slid%r(i) * full * slid%s(i)
+            t1 = answer%t1(i)
+            t2 = answer%t2(i)
+            across = answer%share(i) * constants(i, c_alpha_t)
+            turn = t1 * t2 * answer%squeezed(i) * across
+            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2) - across * t1
+            traction(i, 1) = -trial%rest%pressure(i)
+            traction(i, 2) = across * trial%q1(i)
+            tangent(i, 1, 1) = merge(constants(i, c_alpha_n), 0.0_wp, &
+                trial%rest%pressure(i) > 0.0_wp)
+            tangent(i, 2, 1) = answer%by_du_n(i) * t1
+            tangent(i, 1, 2) = 0.0_wp
+            tangent(i, 2, 2) = across + t1 * pull_1
         end do
+        if (task%ndir == 2) return
         !GCC$ ivdep
         do i = 1, lanes
-            t1 = trial%q1(i) * direction(i)
-            t2 = trial%q2(i) * direction(i)
-            across = share(i) * inc%alpha_t
-            traction(i, 1) = -trial%p(i)
-            traction(i, 2) = across * trial%q1(i)
+            t1 = answer%t1(i)
+            t2 = answer%t2(i)
+            across = answer%share(i) * constants(i, c_alpha_t)
+            turn = t1 * t2 * answer%squeezed(i) * across
+            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2) - across * t1
+            pull_2 = answer%coupling(i) * (answer%d_slip(i) * t2 - turn * t1) - across * t2
             traction(i, 3) = across * trial%q2(i)
-            tangent(i, 1, 1) = inc%alpha_n * closed(i)
-            tangent(i, 2, 1) = coupling(i) * t1
-            tangent(i, 3, 1) = coupling(i) * t2
-            tangent(i, 1, 2) = 0.0_wp
-            tangent(i, 2, 2) = across + (along(i) - across) * t1**2
-            tangent(i, 3, 2) = (along(i) - across) * t1 * t2
+            tangent(i, 3, 1) = answer%by_du_n(i) * t2
+            tangent(i, 3, 2) = t2 * pull_1
             tangent(i, 1, 3) = 0.0_wp
-            tangent(i, 2, 3) = (along(i) - across) * t1 * t2
-            tangent(i, 3, 3) = across + (along(i) - across) * t2**2
+            tangent(i, 2, 3) = t1 * pull_2
+            tangent(i, 3, 3) = across + t2 * pull_2
         end do
-    end subroutine finish
+    end subroutine write_answer
 
 end module friction_batch_kernel

@@ -75,6 +75,11 @@ module friction_mod
         integer :: nstatv          !! state variables of a point
     end type array_sizes
 
+    !> Many points at once, with the same constants or with their own.
+    interface friction_update_batch
+        module procedure update_batch_alike, update_batch_varied
+    end interface friction_update_batch
+
     interface
         !> Friction update of a contact point in its own axes (docs/theory.md, sections 3 and 4).
         pure module subroutine friction_update(du, dtime, props, statev, traction, tangent, status)
@@ -192,11 +197,11 @@ module friction_mod
             logical :: usable
         end function are_usable
 
-        !> Friction update of many contact points, all with the same constants and the same
-        !> increment of time (docs/performance.md). Arrays are component-major: component j of point
-        !> i is du(i, j). Bad input at a point leaves that point's data untouched and harms no other
+        !> Friction update of many contact points, all with the same increment of time and the same
+        !> constants (docs/performance.md). Arrays are component-major: component j of point i is
+        !> du(i, j). Bad input at a point leaves that point's data untouched and harms no other
         !> point.
-        module subroutine friction_update_batch(du, dtime, props, statev, traction, tangent, status)
+        module subroutine update_batch_alike(du, dtime, props, statev, traction, tangent, status)
             implicit none
             real(wp), intent(in), contiguous :: du(:, :)   !! increments of relative displacement;
                                                            !! n points, 2 or 3 components [L]
@@ -209,14 +214,33 @@ module friction_mod
             real(wp), intent(inout), contiguous :: tangent(:, :, :)   !! dT_i/d(du_j) of point k is
                                                                       !! tangent(k, i, j) [F/L^3]
             integer, intent(out), contiguous :: status(:)   !! a named code for each of the n points
-        end subroutine friction_update_batch
+        end subroutine update_batch_alike
 
-        !> The same with explicit sizes.
-        module subroutine update_arrays_batch(sizes, du, dtime, props, statev, traction, tangent, &
-            status)
+        !> The same with constants of its own at each point; the fast way is for points that share
+        !> the law and its choices (scheme, u_of_r, evolution, direction).
+        module subroutine update_batch_varied(du, dtime, props, statev, traction, tangent, status)
+            implicit none
+            real(wp), intent(in), contiguous :: du(:, :)   !! increments of relative displacement;
+                                                           !! n points, 2 or 3 components [L]
+            real(wp), intent(in) :: dtime                  !! increment of time, >= 0 [T]
+            real(wp), intent(in), contiguous :: props(:, :)   !! material constants; n points, as
+                                                              !! in `friction_update`
+            real(wp), intent(inout), contiguous :: statev(:, :)     !! states, start in, end out; n
+                                                                    !! points, 8 or more
+            real(wp), intent(inout), contiguous :: traction(:, :)   !! shape of du [F/L^2]
+            real(wp), intent(inout), contiguous :: tangent(:, :, :)   !! dT_i/d(du_j) of point k is
+                                                                      !! tangent(k, i, j) [F/L^3]
+            integer, intent(out), contiguous :: status(:)   !! a named code for each of the n points
+        end subroutine update_batch_varied
+
+        !> Both with explicit sizes.
+        module subroutine update_arrays_batch(sizes, du, dtime, rows, props, statev, traction, &
+            tangent, status)
             implicit none
             type(array_sizes), intent(in) :: sizes
-            real(wp), intent(in) :: du(sizes%points, sizes%ndir), dtime, props(sizes%nprops)
+            real(wp), intent(in) :: du(sizes%points, sizes%ndir), dtime
+            integer(int64), intent(in) :: rows   !! of `props`: 1, or one for each point
+            real(wp), intent(in) :: props(rows, sizes%nprops)
             real(wp), intent(inout) :: statev(sizes%points, sizes%nstatv)
             real(wp), intent(inout) :: traction(sizes%points, sizes%ndir)
             real(wp), intent(inout), target :: tangent(sizes%points, sizes%ndir, sizes%ndir)

@@ -49,9 +49,8 @@ contains
             status = friction_bad_size
             return
         end if
-        this = batch(int(apart, int64), sizes%ndir, sizes%nprops, statev_size, dtime, .false., &
-            0.0_wp)
-        call prepare_kernel(this, props)
+        call prepare(this, array_sizes(int(apart, int64), sizes%ndir, sizes%nprops, &
+            statev_size), dtime, 1_int64, props)
         last_block = (sizes%points + lanes - 1) / lanes
         if (.not. worth_threads(sizes%points, few)) then
             do number = 1, last_block

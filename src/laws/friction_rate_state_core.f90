@@ -16,9 +16,10 @@ module friction_rate_state_core
     private
 
     public :: state_exponent, asinh_exp, slope_asinh_exp, slip_rate, decayed_part, ageing_rate, &
-        slip_law_rate
+        slip_law_rate, mean_decay, aged_state, aged_slope, slipped_slope
 
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
+    real(wp), parameter :: far = 20.0_wp   !! beyond, asinh(e^u) is u + ln(2) to the last bit
 
 contains
 
@@ -38,23 +39,18 @@ contains
         real(wp), intent(in) :: u
         real(wp) :: y
 
-        if (u > 20.0_wp) then
-            y = u + ln_2 + 0.25_wp * exp(-2.0_wp * u)   ! the next term is below 1e-35
-        else
-            y = asinh(exp(u))
-        end if
+        y = asinh(exp(min(u, far)))
+        if (u > far) y = u + ln_2   ! the next term of the series is round-off
     end function asinh_exp
 
     !> The derivative of that.
     elemental function slope_asinh_exp(u) result(slope)
         real(wp), intent(in) :: u
         real(wp) :: slope   !! 0 to 1
+        real(wp) :: e
 
-        if (u > 0.0_wp) then
-            slope = 1.0_wp / sqrt(1.0_wp + exp(-2.0_wp * u))
-        else
-            slope = exp(u) / sqrt(1.0_wp + exp(2.0_wp * u))
-        end if
+        e = exp(min(u, far))
+        slope = e / sqrt(1.0_wp + e * e)
     end function slope_asinh_exp
 
     !> The law the other way round, v = 2 v0 e^-x sinh(y), for y = mu/a.
@@ -98,5 +94,54 @@ contains
 
         rate = -w * ln_w
     end function slip_law_rate
+
+    !> (1 - e^-x)/x: what is left on average of something that decays.
+    elemental function mean_decay(x, left) result(mean)
+        real(wp), intent(in) :: x      !! slip/d_c, >= 0
+        real(wp), intent(in) :: left   !! e^-x
+        real(wp) :: mean
+        real(wp), parameter :: small = 0.5_wp   !! below it the series is exact to round-off
+        real(wp), parameter :: c1 = 1.0_wp / 2.0_wp, c2 = c1 / 3.0_wp, c3 = c2 / 4.0_wp, &
+            c4 = c3 / 5.0_wp, c5 = c4 / 6.0_wp, c6 = c5 / 7.0_wp, c7 = c6 / 8.0_wp, c8 = c7 / &
+                9.0_wp, &
+            c9 = c8 / 10.0_wp, c10 = c9 / 11.0_wp, c11 = c10 / 12.0_wp, c12 = c11 / 13.0_wp, &
+            c13 = c12 / 14.0_wp, c14 = c13 / 15.0_wp
+        real(wp) :: even, odd, y, z
+
+        ! two short chains of operations in place of a long one
+        y = min(x, small)
+        z = y * y
+        even = c2 + z * (c4 + z * (c6 + z * (c8 + z * (c10 + z * (c12 + z * c14)))))
+        odd = c1 + z * (c3 + z * (c5 + z * (c7 + z * (c9 + z * (c11 + z * c13)))))
+        mean = 1.0_wp + y * (y * even - odd)
+        if (x > small) mean = (1.0_wp - left) / max(x, small)   ! lanes divide in any case
+    end function mean_decay
+
+    !> theta after a slip by the ageing law, exact for a constant slip rate.
+    elemental function aged_state(theta_n, dt, left, mean) result(theta)
+        real(wp), intent(in) :: theta_n      !! at the start of the increment, > 0 [T]
+        real(wp), intent(in) :: dt           !! > 0 [T]
+        real(wp), intent(in) :: left, mean   !! e^-x and `mean_decay`
+        real(wp) :: theta                    !! [T]
+
+        theta = max(theta_n * left + dt * mean, tiny(theta))
+    end function aged_state
+
+    !> d(ln theta)/d(ln slip) of that.
+    elemental function aged_slope(x, theta_n, dt, left, mean, theta) result(by_ln_slip)
+        real(wp), intent(in) :: x, theta_n, dt, left, mean, theta
+        real(wp) :: by_ln_slip
+
+        by_ln_slip = (dt * (left - mean) - x * (theta_n * left)) / theta
+    end function aged_slope
+
+    !> The same by the slip law, where ln(theta) = ln(theta_n) + x mean pull.
+    elemental function slipped_slope(x, left, mean, pull) result(by_ln_slip)
+        real(wp), intent(in) :: x, left, mean
+        real(wp), intent(in) :: pull   !! ln(dt/x) - ln(theta_n)
+        real(wp) :: by_ln_slip
+
+        by_ln_slip = x * (left * pull - mean)
+    end function slipped_slope
 
 end module friction_rate_state_core

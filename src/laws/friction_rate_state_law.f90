@@ -21,8 +21,9 @@ module friction_rate_state_law
         onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         name_length, positive
-    use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
-        state_exponent
+    use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
+        mean_decay, &
+        slip_law_rate, slipped_slope, slope_asinh_exp, state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -219,13 +220,13 @@ contains
         left = exp(-x)
         mean = mean_decay(x, left)
         if (self%evolution == ageing) then
-            theta = max(theta_n * left + dt * mean, tiny(theta))
+            theta = aged_state(theta_n, dt, left, mean)
             ln_theta = log(theta)
-            by_ln_slip = (dt * (left - mean) - x * theta_n * left) / theta
+            by_ln_slip = aged_slope(x, theta_n, dt, left, mean, theta)
         else
             pull = log(dt) - log(x) - log(theta_n)
             ln_theta = log(theta_n) + x * mean * pull
-            by_ln_slip = x * (left * pull - mean)
+            by_ln_slip = slipped_slope(x, left, mean, pull)
             theta = max(exp(ln_theta), tiny(theta))
         end if
     end subroutine evolve
@@ -487,21 +488,6 @@ contains
         x = log(slip) - log(dt) - log(2.0_wp * self%v0) + state_exponent(self%a, self%b, self%f0, &
             log(self%v0) - log(self%d_c) + ln_theta)
     end function direct_exponent
-
-    !> (1 - e^-x)/x: what is left on average of something that decays.
-    pure function mean_decay(x, left) result(mean)
-        real(wp), intent(in) :: x      !! >= 0
-        real(wp), intent(in) :: left   !! e^-x
-        real(wp) :: mean
-
-        if (x > 0.5_wp) then
-            mean = (1.0_wp - left) / x
-        else if (left < 1.0_wp) then
-            mean = (1.0_wp - left) / (-log(left))   ! the errors of the two cancel
-        else
-            mean = 1.0_wp
-        end if
-    end function mean_decay
 
     !> Minus the derivative of that by x, 1/2 at x = 0; it shrinks with x.
     pure function fall_of_mean(x, left, mean) result(fall)

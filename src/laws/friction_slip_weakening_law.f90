@@ -11,6 +11,7 @@ module friction_slip_weakening_law
     use friction_law, only : below, internal_variable, law_state, law_traits, load_rates, &
         named_law, sliding
     use friction_law_constants, only : constant_table, law_constant, name_length, positive
+    use friction_slip_weakening_core, only : coefficient_at, fall_at, slip_to_balance
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -147,12 +148,10 @@ contains
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
         type(law_state) :: start
-        real(wp) :: slope
 
-        answer%slip = (trial - self%mu_k * pressure) / stiffness
-        slope = stiffness - fall(self, old%r, pressure)
         start = state_after(self, old%r)
-        if (slope > 0.0_wp) answer%slip = min(answer%slip, (trial - start%mu * pressure) / slope)
+        answer%slip = slip_to_balance(trial - start%mu * pressure, trial - self%mu_k * pressure, &
+            stiffness, fall(self, old%r, pressure))
         call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
             answer%d_slip, answer%d_pressure)
         solved = .true.
@@ -200,11 +199,8 @@ contains
         class(slip_weakening_law), intent(in) :: self
         real(wp), intent(in) :: d   !! slip since the surface was fresh, >= 0 [L]
         type(law_state) :: state
-        real(wp) :: mu
 
-        mu = self%mu_k
-        if (d < self%d_c) mu = mu + (self%mu_s - self%mu_k) * ((self%d_c - d) / self%d_c)
-        state = law_state(mu=mu, r=d)
+        state = law_state(mu=coefficient_at(d, self%mu_s, self%mu_k, self%d_c), r=d)
     end function state_after
 
     !> How fast the resistance falls with slip.
@@ -214,8 +210,7 @@ contains
         real(wp), intent(in) :: pressure   !! [F/L^2]
         real(wp) :: rate                   !! >= 0 [F/L^3]
 
-        rate = 0.0_wp
-        if (d < self%d_c) rate = (self%mu_s - self%mu_k) * pressure / self%d_c
+        rate = fall_at(d, (self%mu_s - self%mu_k) * pressure, self%d_c)
     end function fall
 
 end module friction_slip_weakening_law

@@ -10,6 +10,7 @@ module friction_static_kinetic_law
     use friction_law, only : below, law_state, law_traits, load_rates, named_law, onset_drops, &
         onset_yields, sliding
     use friction_law_constants, only : constant_table, law_constant, name_length
+    use friction_static_kinetic_core, only : decay_per_slip, excess_after
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -141,8 +142,8 @@ contains
         real(wp), intent(out) :: resistance, d_slip, d_pressure
         real(wp) :: rate, excess
 
-        rate = decay_per_slip(self, dt)
-        excess = (self%mu_s - self%mu_k) * exp(-rate * slip)
+        rate = decay_per_slip(self%d_c, dt)
+        excess = excess_after(self%mu_s, self%mu_k, rate, slip)
         new = law_state(mu=self%mu_k + excess, r=0.0_wp)
         d_pressure = new%mu
         resistance = new%mu * pressure
@@ -221,16 +222,5 @@ contains
         traits = law_traits(onset=onset_yields)
         if (self%d_c * (self%mu_s - self%mu_k) > 0.0_wp) traits%onset = onset_drops
     end function traits
-
-    !> d_c/dt, short of what would overflow: so fast a decay is a jump.
-    pure function decay_per_slip(self, dt) result(rate)
-        class(static_kinetic_law), intent(in) :: self
-        real(wp), intent(in) :: dt   !! > 0 [T]
-        real(wp) :: rate             !! [1/L]
-        real(wp), parameter :: fastest = 1.0e100_wp
-
-        rate = fastest
-        if (self%d_c < fastest * dt) rate = self%d_c / dt
-    end function decay_per_slip
 
 end module friction_static_kinetic_law

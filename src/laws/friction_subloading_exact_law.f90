@@ -10,6 +10,8 @@ module friction_subloading_exact_law
     use friction_exponential_integral, only : e1, inverse_e1
     use friction_kinds, only : wp
     use friction_law, only : law_state, least_ratio, sliding
+    use friction_subloading_exact_core, only : exact_coefficient, exact_fall, mean_of_decay, &
+        tilt_of_decay
     use friction_subloading_law, only : subloading_law
     implicit none
     private
@@ -188,14 +190,13 @@ contains
         type(law_state), intent(in) :: old    !! state at the start of the increment
         real(wp), intent(out) :: mu           !! within its bounds in spite of round-off [-]
         real(wp), intent(out) :: fall         !! -d(mu)/ds [1/L]
-        real(wp) :: x, healed, decay, mean, tilt
+        real(wp) :: x, healing, decay, mean, tilt
 
         x = self%kappa * s + self%xi * dt
-        healed = self%xi * dt * (self%mu_s - self%mu_k)
+        healing = self%xi * dt
         call decay_means(x, decay, mean, tilt)
-        mu = self%mu_k + ((old%mu - self%mu_k) * decay + healed * mean)
-        mu = min(max(mu, self%mu_k), self%mu_s)
-        fall = self%kappa * ((old%mu - self%mu_k) * decay + healed * tilt)
+        mu = exact_coefficient(old%mu, self%mu_s, self%mu_k, healing, decay, mean)
+        fall = self%kappa * exact_fall(old%mu, self%mu_s, self%mu_k, healing, decay, tilt)
     end subroutine friction_coefficient
 
     !> exp(-x) and the means over 0 < t < 1 of exp(-x t) and of t exp(-x t): (1 - exp(-x))/x, and
@@ -204,27 +205,12 @@ contains
         real(wp), intent(in) :: x                     !! >= 0
         real(wp), intent(out) :: decay, mean, tilt
         real(wp), parameter :: x_series = 0.5_wp
-        integer :: k
-        !> Of (-x)^k: 1/(k! (k + 2)); the next term is below 1e-16 up to `x_series`.
-        real(wp), parameter :: c(0:13) = [(1.0_wp / (gamma(k + 1.0_wp) * (k + 2)), k = 0, 13)]
-        real(wp) :: even, odd
 
-        if (x > x_series) then
-            decay = exp(-x)
-            mean = (1.0_wp - decay) / x
-            tilt = (mean - decay) / x
-        else
-            ! two short chains of operations in place of a long one
-            even = c(12)
-            odd = c(13)
-            do k = 10, 0, -2
-                even = even * x**2 + c(k)
-                odd = odd * x**2 + c(k + 1)
-            end do
-            tilt = even - x * odd
-            mean = (1.0_wp + x * tilt) / (1.0_wp + x)
-            decay = 1.0_wp - x * mean
-        end if
+        decay = 0.0_wp
+        if (x > x_series) decay = exp(-x)
+        tilt = tilt_of_decay(x, decay)
+        mean = mean_of_decay(x, tilt)
+        if (x <= x_series) decay = 1.0_wp - x * mean
     end subroutine decay_means
 
     !> R after the slip `m s`.

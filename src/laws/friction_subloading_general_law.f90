@@ -14,6 +14,7 @@
 module friction_subloading_general_law
     use friction_kinds, only : wp
     use friction_law, only : law_state, sliding, unbounded
+    use friction_subloading_general_core, only : half_pi, reciprocal_root
     use friction_subloading_law, only : subloading_law, u_reciprocal
     implicit none
     private
@@ -26,8 +27,6 @@ module friction_subloading_general_law
         procedure :: solve
         procedure :: u_of
     end type subloading_general_law
-
-    real(wp), parameter :: half_pi = 1.57079632679489661923132169163975144_wp
 
 contains
 
@@ -157,24 +156,6 @@ contains
             rate = self%m * cosine * sine / (sine**2 + half_pi * ms + least)
         end if
     end subroutine similarity_ratio
-
-    !> The root of `R - R_n = ms (1/R - 1)`, a quadratic in R as in `e = 1 - R`, both without
-    !> cancellation.
-    pure subroutine reciprocal_root(r_n, ms, r, e)
-        real(wp), intent(in) :: r_n     !! R at the start of the increment [-]
-        real(wp), intent(in) :: ms      !! m times the slip, >= 0 [-]
-        real(wp), intent(out) :: r, e   !! R at its end, and 1 - R [-]
-        real(wp) :: root
-
-        root = hypot(ms - r_n, 2.0_wp * sqrt(ms))
-        e = 2.0_wp * (1.0_wp - r_n) / ((1.0_wp - r_n) + (1.0_wp + ms) + root)
-        if (ms > r_n) then
-            r = 2.0_wp * ms / ((ms - r_n) + root)
-        else
-            r = 0.5_wp * ((r_n - ms) + root)
-        end if
-        if (r > 0.5_wp) r = 1.0_wp - e   ! never above 1
-    end subroutine reciprocal_root
 
     !> The root of `R - R_n = ms cot(pi R/2)` by Newton's method from the left, where it climbs
     !> without fail because the equation is concave: `cot(pi R/2) >= (1/R - 1)/(pi/2)`.

@@ -4,10 +4,13 @@
 
 #ifdef STICKSLIP_VECTOR_KERNELS
 
-typedef void batch_kernel(int64_t stride, const double *du, double dtime, const double *constants, double *statev,
+typedef void batch_kernel(const void *task, const double *constants, const double *du, double *statev,
                           double *traction, double *tangent, int *left, int *n_left);
 typedef void slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau, const double *pressure,
                               const double *theta, const double *constants, double *rates, int *left);
+
+typedef void subloading_kernel(int64_t stride, const double *du, double dtime, const double *constants, double *statev,
+                               double *traction, double *tangent, int *left, int *n_left);
 
 batch_kernel stickslip_batch_kernel, stickslip_batch_kernel_sse2, stickslip_batch_kernel_avx2,
     stickslip_batch_kernel_avx512;
@@ -24,12 +27,23 @@ static enum instruction_set instructions(void)
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? AVX2 : SSE2;
 }
 
-void stickslip_batch_kernel(int64_t stride, const double *du, double dtime, const double *constants, double *statev,
+subloading_kernel stickslip_subloading_kernel, stickslip_subloading_kernel_sse2, stickslip_subloading_kernel_avx2,
+    stickslip_subloading_kernel_avx512;
+
+void stickslip_subloading_kernel(int64_t stride, const double *du, double dtime, const double *constants,
+                                 double *statev, double *traction, double *tangent, int *left, int *n_left)
+{
+    static subloading_kernel *const copies[] = {stickslip_subloading_kernel_sse2, stickslip_subloading_kernel_avx2,
+                                                stickslip_subloading_kernel_avx512};
+    copies[instructions()](stride, du, dtime, constants, statev, traction, tangent, left, n_left);
+}
+
+void stickslip_batch_kernel(const void *task, const double *constants, const double *du, double *statev,
                             double *traction, double *tangent, int *left, int *n_left)
 {
     static batch_kernel *const copies[] = {stickslip_batch_kernel_sse2, stickslip_batch_kernel_avx2,
                                            stickslip_batch_kernel_avx512};
-    copies[instructions()](stride, du, dtime, constants, statev, traction, tangent, left, n_left);
+    copies[instructions()](task, constants, du, statev, traction, tangent, left, n_left);
 }
 
 void stickslip_slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau,
