@@ -82,15 +82,15 @@ contains
         type(slide_block) :: slid
         integer :: n_slides
 
-        call prevent_slip(task, constants, du, statev, trial, left, n_slides, n_left)
+        call find_trial(task, constants, du, statev, trial, left, n_slides, n_left)
         if (n_left > 0) return
-        call allow_slip(task, constants, trial, n_slides, slid, left, n_left)
+        call find_slip(task, constants, trial, n_slides, slid, left, n_left)
         if (n_left > 0) return
         call finish(task, constants, du, trial, slid, statev, traction, tangent)
     end subroutine update_block
 
     !> The trial state, and the points that the kernel leaves.
-    subroutine prevent_slip(task, constants, du, statev, trial, left, n_slides, n_left)
+    subroutine find_trial(task, constants, du, statev, trial, left, n_slides, n_left)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
         real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
@@ -127,7 +127,7 @@ contains
             if (min(valid(i), trial%rest%valid(i)) < 0.0_wp) left(i) = 1
             n_left = n_left + left(i)
         end do
-    end subroutine prevent_slip
+    end subroutine find_trial
 
     !> The points at the start of the increment, and the elastic traction at its end.
     subroutine load(task, constants, du, statev, trial, valid)
@@ -232,7 +232,7 @@ contains
     end function zero_unless
 
     !> Slip of the points that slide.
-    subroutine allow_slip(task, constants, trial, n_slides, slid, left, n_left)
+    subroutine find_slip(task, constants, trial, n_slides, slid, left, n_left)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
@@ -251,7 +251,7 @@ contains
             call slide_packed(task, constants, trial, n_slides, slid, left)
         end if
         n_left = sum(left)
-    end subroutine allow_slip
+    end subroutine find_slip
 
     pure subroutine clear(slid)
         type(slide_block), intent(inout) :: slid

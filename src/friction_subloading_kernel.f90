@@ -79,15 +79,15 @@ contains
             mu_k=constants(4), kappa=constants(5), xi=constants(6), m=constants(7), &
             mu_0=constants(8), w0=1.0_wp + constants(6) * dtime, &
             forming=constants(6) * dtime * (constants(3) - constants(4)))
-        call prevent_slip(stride, inc, du, statev, trial, left, n_left)
+        call find_trial(stride, inc, du, statev, trial, left, n_left)
         if (n_left > 0) return
-        call let_slip(inc, trial, slid, left, n_left)
+        call find_slip(inc, trial, slid, left, n_left)
         if (n_left > 0) return
         call finish(stride, inc, du, trial, slid, statev, traction, tangent)
     end subroutine update_block
 
     !> The trial state, and the points that the kernel leaves.
-    subroutine prevent_slip(stride, inc, du, statev, trial, left, n_left)
+    subroutine find_trial(stride, inc, du, statev, trial, left, n_left)
         integer(c_int64_t), intent(in) :: stride
         type(increment), intent(in) :: inc
         real(wp), intent(in) :: du(stride, 3), statev(stride, 8)
@@ -138,7 +138,7 @@ contains
             if (valid < 0.0_wp) left(i) = 1
             n_left = n_left + left(i)
         end do
-    end subroutine prevent_slip
+    end subroutine find_trial
 
     !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
     !> silent where a comparison with NaN raises an exception.
@@ -158,7 +158,7 @@ contains
     end function zero_unless
 
     !> Solves for slip and R of the points that slide, packed together.
-    subroutine let_slip(inc, trial, slid, left, n_left)
+    subroutine find_slip(inc, trial, slid, left, n_left)
         type(increment), intent(in) :: inc
         type(trial_block), intent(in) :: trial
         type(slip_block), intent(out) :: slid
@@ -199,7 +199,7 @@ contains
         do i = 1, n_slides
             left(place(i)) = int(moves(i), c_int)
         end do
-    end subroutine let_slip
+    end subroutine find_slip
 
     !> First slip and R: `start_far` of module friction_subloading_law, with one division for the
     !> quotients that can share it.
