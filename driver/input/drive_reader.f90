@@ -83,7 +83,11 @@ contains
         if (size(velocity) < n) velocity = [(velocity(1), i = 1, n)]
         if (size(normal) < n) normal = [(normal(1), i = 1, n)]
         drive%listed = n
-        drive%start = [0.0_dp, (sum(duration(:i)), i = 1, n - 1)]
+        allocate (drive%start(n))
+        drive%start(1) = 0.0_dp
+        do i = 2, n
+            drive%start(i) = drive%start(i - 1) + duration(i - 1)
+        end do
         drive%velocity = velocity
         drive%normal = normal
         drive%normal_rate = 0.0_dp * normal

@@ -36,6 +36,7 @@ module namelist_input
         type(group_seen), allocatable :: groups(:)
         type(fault), allocatable :: faults(:)
         logical, private :: broken = .false.     !! the text could not be read to its end
+        integer, private :: not_listed = 0       !! faults that are only counted
         type(known_key), allocatable, private :: keys(:)
         integer, private :: n_keys = 0
     contains
@@ -476,23 +477,28 @@ contains
         if (token%quoted) text = "'" // text // "'"
     end function shown
 
-    !> Notes every group and key that was not asked for, with the name that may have been meant.
+    !> Notes every group and key that was not asked for, with the name that may have been meant;
+    !> keys beyond a screenful are only counted.
     subroutine refuse_unknown(self)
         class(namelist_file), intent(inout) :: self
-        integer :: i
+        integer :: unknown, i
 
         do i = 1, size(self%groups)
             if (self%groups(i)%known) cycle
             call self%add_fault(self%groups(i)%line, '&' // self%groups(i)%name &
                 // ': unknown group' // suggestion(self, self%groups(i)%name, ''))
         end do
+        unknown = 0
         do i = 1, size(self%entries)
             associate (entry => self%entries(i))
                 if (entry%known .or. entry%faulty .or. .not. known_group(self, entry%group)) cycle
+                unknown = unknown + 1
+                if (unknown > most_shown) cycle
                 call self%add_fault(entry%line, '&' // entry%group // ' ' // entry%key &
                     // ': unknown key' // suggestion(self, entry%group, entry%key))
             end associate
         end do
+        if (.not. self%broken) self%not_listed = max(0, unknown - most_shown)
     end subroutine refuse_unknown
 
     !> A hint to where a key belongs, another group that has it, or a key that is spelled much like
@@ -570,7 +576,7 @@ contains
         class(namelist_file), intent(in) :: self
         character(len=:), allocatable :: text
         integer, allocatable :: order(:)
-        integer :: swap, i, j
+        integer :: swap, more, i, j
 
         order = pack([(i, i = 1, size(self%faults))], .not. self%faults%hidden)
         do i = 2, size(order)
@@ -589,8 +595,9 @@ contains
                 text = text // ': ' // this%text // new_line('a')
             end associate
         end do
-        if (size(order) > most_shown) text = text // self%name // ': and ' &
-            // whole_text(size(order) - most_shown) // ' faults more' // new_line('a')
+        more = max(0, size(order) - most_shown) + self%not_listed
+        if (more > 0) text = text // self%name // ': and ' // whole_text(more) // ' faults more' &
+            // new_line('a')
     end function describe_faults
 
     !> Gives a key one value in place of all that it has: the i-th value of another key. A key or a

@@ -14,6 +14,7 @@ module namelist_parser
 
     integer, parameter, public :: most_values = 1000000   !! of a key
     integer, parameter :: most_faults = 40                !! then the rest is not read
+    integer, parameter :: most_groups = 100               !! likewise
     character(len=1), parameter :: line_feed = new_line('a')
 
     type :: value_token
@@ -132,6 +133,9 @@ contains
         seen%name = group
         seen%line = here%line
         parsed%groups = [parsed%groups, seen]
+        if (size(parsed%groups) <= most_groups) return
+        call add_fault(parsed, here%line, 'there are too many groups: what follows is not read')
+        parsed%broken = .true.
     end subroutine start_group
 
     !> The group that was opened last has no end.
@@ -465,26 +469,30 @@ contains
         logical, intent(inout) :: broken
         character(len=:), allocatable, intent(inout) :: problem
         character(len=1) :: quote
-        integer :: last, length
+        integer :: last, length, n
 
         quote = text(here%at:here%at)
         last = line_end(text, here%at)
-        inner = ''
+        inner = text(here%at:last)
+        n = 0
         here%at = here%at + 1
         do
             length = index(text(here%at:last), quote) - 1
             if (length < 0) then
-                problem = 'the text ' // quote // printable(inner // text(here%at:last)) &
+                problem = 'the text ' // quote // printable(inner(:n) // text(here%at:last)) &
                     // ' is not ended by a quote'
                 broken = .true.
                 return
             end if
-            inner = inner // text(here%at:here%at + length - 1)
+            inner(n + 1:n + length) = text(here%at:here%at + length - 1)
+            n = n + length
             here%at = here%at + length + 1
             if (text(here%at:here%at) /= quote) exit
-            inner = inner // quote
+            n = n + 1
+            inner(n:n) = quote
             here%at = here%at + 1
         end do
+        inner = inner(:n)
         if (is_blank(text(here%at:here%at)) .or. scan(text(here%at:here%at), ',/!&$') > 0) return
         problem = 'the text ' // quote // printable(inner) // quote // ' is followed by ' &
             // printable(text(here%at:last)) // ': a quote or a comma is missing'
