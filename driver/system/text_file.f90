@@ -15,6 +15,8 @@ module text_file
     type :: output_file
         private
         type(c_ptr) :: stream = c_null_ptr
+        character(len=:), allocatable :: name
+        logical :: of_lines = .false.
         integer(int64), public :: bytes = 0   !! written so far
         logical, public :: failed = .false.   !! a line could not be written, or the file not opened
     contains
@@ -61,6 +63,7 @@ contains
         class(output_file), intent(inout) :: self
         character(len=*), intent(in) :: name
 
+        self%name = name
         self%stream = c_fopen(name // c_null_char, 'w' // c_null_char)
         self%failed = .not. c_associated(self%stream)
     end subroutine create
@@ -76,6 +79,7 @@ contains
         self%failed = found < bytes
         if (.not. self%failed) self%failed = .not. truncate_file(name, bytes)
         if (self%failed) return
+        self%name = name
         self%stream = c_fopen(name // c_null_char, 'a' // c_null_char)
         self%failed = .not. c_associated(self%stream)
         self%bytes = bytes
@@ -85,6 +89,7 @@ contains
         class(output_file), intent(inout) :: self
         character(len=*), intent(in) :: line
 
+        self%of_lines = .true.
         call self%put(line // new_line('a'))
     end subroutine write_line
 
@@ -123,12 +128,36 @@ contains
         self%failed = c_fflush(self%stream) /= 0
     end subroutine flush_lines
 
+    !> Closes the file. Of a line that did not fit on the disk nothing is left: the part of a number
+    !> would be read as another one.
     subroutine finish(self)
         class(output_file), intent(inout) :: self
 
         if (.not. c_associated(self%stream)) return
         if (c_fclose(self%stream) /= 0) self%failed = .true.
         self%stream = c_null_ptr
+        if (self%failed .and. self%of_lines) call cut_to_whole_lines(self%name)
     end subroutine finish
+
+    subroutine cut_to_whole_lines(name)
+        character(len=*), intent(in) :: name
+        integer, parameter :: longest = 4096   ! line
+        character(len=longest) :: tail
+        integer(int64) :: length, first
+        integer :: unit, status, last
+        logical :: done
+
+        open (newunit=unit, file=name, access='stream', form='unformatted', action='read', &
+            status='old', iostat=status)
+        if (status /= 0) return
+        inquire (unit=unit, size=length)
+        first = max(1_int64, length - longest + 1)
+        last = int(length - first + 1)
+        if (last > 0) read (unit, pos=first, iostat=status) tail(:last)
+        close (unit)
+        if (status /= 0) return
+        last = index(tail(:last), new_line('a'), back=.true.)
+        if (last > 0) done = truncate_file(name, first - 1 + last)
+    end subroutine cut_to_whole_lines
 
 end module text_file

@@ -518,6 +518,8 @@ class FailedRun(Program):
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn('cannot write the time series', result.stderr)
         self.assertGreater(len(self.rows('case_out/case.csv')), 100)
+        last = (small / 'case.csv').read_text(encoding='ascii')[-27:]
+        self.assertRegex(last, r',[ -]?\d\.\d{16}E[+-]\d{3}\n$', 'the last row is whole')
 
 
 class ShippedInputs(Program):
