@@ -29,7 +29,7 @@ module friction_batch_kernel
 
     integer, parameter :: wp = c_double
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
-    real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
+    real(wp), parameter :: smallest = 1.0e-100_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
@@ -206,6 +206,9 @@ contains
             reach = trial%rest%strength(i) / constants(i, c_alpha_t)
             if (constants(i, c_cap) >= no_cap) then
                 trial%start(i) = constants(i, c_alpha_t) * length
+                if (abs(u1) + abs(u2) > 0.0_wp .and. abs(u1) + abs(u2) < smallest) then
+                    valid(i) = -1.0_wp   ! its squares underflow
+                end if
                 if (max(along - reach * length, reach * along - (trial%q1(i)**2 + q2**2) * &
                     length) < 0.0_wp) then
                     valid(i) = -1.0_wp

@@ -233,15 +233,19 @@ contains
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: state(8), traction(:)
         real(dp) :: apart
-        real(dp) :: force, length
+        real(dp) :: force, length, condition, inner(2)
 
         force = max(abs(t%traction(1)), norm2(t%traction(2:3)), t%props(3) * norm2(t%old(3:4)), &
             tiny(force))
         length = max(norm2(t%old(3:4)) + norm2(t%du(2:3)), tiny(length))
         apart = maxval(abs(traction - t%traction(:size(traction)))) / force
         apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)))))
-        apart = max(apart, maxval(abs(state(5:6) - t%new(5:6)) / max(abs(t%new(5:6)), &
-            1.0e-300_dp)))
+        condition = 1.0_dp
+        ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
+        if (nint(t%props(1)) == 4) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
+        inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
+        if (nint(t%props(1)) == 5) inner(2) = max(inner(2), length)   ! a slip
+        apart = max(apart, maxval(abs(state(5:6) - t%new(5:6)) / inner) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         apart = max(apart, abs(state(8) - t%new(8)) / max(force * length + t%new(8), &
             1.0e-300_dp))
