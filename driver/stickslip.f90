@@ -6,6 +6,7 @@ program stickslip
     use fault_study, only : run_fault_engine
     use platform, only : exit_program, hold_output
     use point_study, only : run_point
+    use stability_study, only : stability_of_input
     use study, only : run_input
     use sweep, only : sweep_input
     use verb_common, only : exit_bad_input, exit_done
@@ -29,6 +30,8 @@ program stickslip
         call run_point(wanted, exit_status)
     case ('sweep')
         call sweep_input(wanted, exit_status)
+    case ('stability')
+        call stability_of_input(wanted, exit_status)
     case ('fault')
         call run_fault_engine(wanted, exit_status)
     case ('check')

@@ -12,15 +12,23 @@ class Program:
 
     def run(self, **groups):
         """Runs an input given as {group: {key: value}}; the columns of its table and of its events."""
+        return self.tables('run', groups, 'case', 'case_events')
+
+    def stability(self, **groups):
+        """Steady sliding of such an input: the columns of its first row, numbers where they are."""
+        first, = self.tables('stability', groups, 'case_stability', columns=first_row)
+        return first
+
+    def tables(self, verb, groups, *names, columns=None):
         text = ''.join(f'&{group}\n' + ''.join(f'  {key} = {spelt(value)}\n' for key, value in keys.items()) + '/\n'
                        for group, keys in groups.items() if keys)
         with tempfile.TemporaryDirectory() as folder:
             pathlib.Path(folder, 'case.nml').write_text(text, encoding='utf-8')
-            result = subprocess.run([self.path, 'run', 'case.nml', '--no-plot', '--quiet'], cwd=folder, text=True,
+            result = subprocess.run([self.path, verb, 'case.nml', '--no-plot', '--quiet'], cwd=folder, text=True,
                                     capture_output=True, check=False)
             if result.returncode:
                 raise RuntimeError(f'{result.stderr}\n{text}')
-            return table(f'{folder}/case_out/case.csv'), table(f'{folder}/case_out/case_events.csv')
+            return [(columns or table)(f'{folder}/case_out/{name}.csv') for name in names]
 
 
 def spelt(value):
@@ -30,6 +38,13 @@ def spelt(value):
     if isinstance(value, (list, tuple)):
         return ', '.join(map(spelt, value))
     return repr(value) if isinstance(value, int) else repr(float(value))
+
+
+def first_row(name):
+    with open(name, encoding='utf-8') as file:
+        names, row, *_ = (line.strip().split(',') for line in file)
+    words = ('stability', 'reason')
+    return {key: value if key in words else float(value) for key, value in zip(names, row)}
 
 
 def table(name):

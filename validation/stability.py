@@ -84,6 +84,8 @@ the interval of 10 % to either side.""")
 
 SUBLOADING = {'law': 'subloading', 'alpha_n': 1000.0, 'alpha_t': 1000.0, 'mu_s': 0.4, 'mu_k': 0.2, 'm': 1000.0}
 NORMAL = 10.0
+CASES = (dict(kappa=10.0, xi=10.0, rate=1.0, mass=1e-3, stiffness=1.0), dict(kappa=10.0, xi=10.0, rate=3.0, mass=1e-2, stiffness=5.0),
+         dict(kappa=2.0, xi=0.5, rate=0.5, mass=1e-3, stiffness=1.0), dict(kappa=100.0, xi=100.0, rate=1.0, mass=1e-3, stiffness=10.0))
 
 
 def subloading_terms(kappa, xi, rate):
@@ -120,11 +122,7 @@ def subloading(program, report):
     report.section('Linear stability: the subloading law', """
 The same with the criterion of theory.md, section 6, `A < C c + (C K/b)/(M b c + C)`, which counts the contact spring; here the damping `C` is
 sought. `alpha_t = 1000`, `mu_s = 0.4`, `mu_k = 0.2`, `m = 1000`, normal traction 10 (N, mm, s, t).""")
-    cases = (dict(kappa=10.0, xi=10.0, rate=1.0, mass=1e-3, stiffness=1.0),
-             dict(kappa=10.0, xi=10.0, rate=3.0, mass=1e-2, stiffness=5.0),
-             dict(kappa=2.0, xi=0.5, rate=0.5, mass=1e-3, stiffness=1.0),
-             dict(kappa=100.0, xi=100.0, rate=1.0, mass=1e-3, stiffness=10.0))
-    for case in cases:
+    for case in CASES:
         expected = critical_damping(case)
         for scheme in ('exact_rate', 'backward_euler'):
 
@@ -136,6 +134,40 @@ sought. `alpha_t = 1000`, `mu_s = 0.4`, `mu_k = 0.2`, `m = 1000`, normal tractio
                        bisect(rate_of, 0.9 * expected, 1.1 * expected), 1e-2)
 
 
+# ---- the same from eigenvalues -----------------------------------------------------------------------
+
+def eigenvalues(program, report):
+    report.section('Linear stability: eigenvalues', """
+The same closed forms against `stickslip stability`, which finds where the largest real part of an eigenvalue changes its sign
+([stability.md](stability.md)). Rate and state on a rigid contact; the other constants as above.""")
+    source = 'Rice and Ruina 1983'
+    for evolution in ('ageing', 'slip'):
+        for mass, rate in ((0.0, 1.0), (0.025, 1.0), (0.025, 2.0), (0.025, 0.1)):
+            expected = critical_stiffness(mass, rate)
+
+            def steady(stiffness):
+                return program.stability(
+                    friction={'law': 'rate_and_state', 'alpha_n': 1.0, 'alpha_t': CONTACT, 'contact': 'rigid', 'a': A, 'b': B, 'd_c': D_C,   # noqa: B023
+                              'v0': V0, 'f0': F0, 'evolution': evolution},                                                                   # noqa: B023
+                    slider={'mass': mass, 'stiffness': stiffness, 'normal_traction': 1.0}, drive={'velocity': rate},                         # noqa: B023
+                    time={'t_end': 1.0, 'rtol': 1e-6})
+
+            found = steady(1.1 * expected)
+            case = f'{evolution} law, `M = {mass:g}`, `v = {rate:g}`'
+            report.row(f'{case}: critical stiffness', source, expected, found['critical_stiffness'], 1e-10)
+            report.row(f'{case}: frequency there, `v/d_c sqrt((b - a)/a)/(2 pi)`', source, rate / D_C * numpy.sqrt((B - A) / A) / (2 * numpy.pi),
+                       steady(found['critical_stiffness'])['frequency'], 1e-10)
+    for case in CASES:
+        expected = critical_damping(case)
+        found = program.stability(
+            friction={**SUBLOADING, 'kappa': case['kappa'], 'xi': case['xi']},
+            slider={'mass': case['mass'], 'stiffness': case['stiffness'], 'damping': 1.1 * expected, 'normal_traction': NORMAL},
+            drive={'velocity': case['rate']}, time={'t_end': 1.0, 'dt': 0.1})
+        report.row('subloading: critical damping, ' + ', '.join(f'`{key} = {value:g}`' for key, value in case.items()), 'theory.md 6', expected,
+                   found['critical_damping'], 1e-10)
+
+
 def validate(program, report):
     rate_and_state(program, report)
     subloading(program, report)
+    eigenvalues(program, report)

@@ -1,10 +1,12 @@
 !> One row of the table of a sweep: the values of its keys, and what the run has come to.
 module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use linear_stability, only : analyse, stability, undecided, verdicts
     use number_text, only : quoted_field, short_text
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
     use run_warnings, only : find_warnings, run_warning
+    use steady_sliding, only : sliding_case, take_piece
     use sweep_settings, only : sweep_axis
     implicit none
     private
@@ -12,7 +14,8 @@ module sweep_table
     public :: failure_text, late_from, point_text, result_text, table_header
 
     character(len=*), parameter :: results_header = 'status,regime,events,late_events,period,' &
-        // 'stress_drop,peak_velocity,mean_force,energy_defect,warnings,reason'
+        // 'stress_drop,peak_velocity,mean_force,energy_defect,stability,growth_rate,' &
+        // 'warnings,reason'
 
     real(dp), parameter :: start_up = 0.5_dp   !! the part of a run that is taken to be start-up
 
@@ -74,8 +77,22 @@ contains
             // ',' // short_text(maxval(late%peak_velocity))
         text = text // ',' // ratio(result%energy%drive_work, run%drive%position(result%time)) &
             // ',' // ratio(result%energy%unbalanced(), result%energy%drive_work) // ',' &
-            // warning_codes(run, result) // ','
+            // steady_text(run) // ',' // warning_codes(run, result) // ','
     end function result_text
+
+    !> Is steady sliding stable as the run ends? And the rate at which a small disturbance grows.
+    function steady_text(run) result(text)
+        type(settings), intent(in) :: run
+        character(len=:), allocatable :: text
+        type(sliding_case) :: this
+        type(stability) :: steady
+
+        call take_piece(this, run, run%drive%piece(run%t_end))
+        call analyse(this, steady)
+        text = trim(verdicts(steady%verdict)) // ',NaN'
+        if (steady%verdict /= undecided) text = trim(verdicts(steady%verdict)) // ',' &
+            // short_text(steady%growth)
+    end function steady_text
 
     !> Codes of the warnings, blanks between them.
     function warning_codes(run, result) result(codes)
@@ -98,7 +115,7 @@ contains
         character(len=*), intent(in) :: reason
         character(len=:), allocatable :: text
 
-        text = 'failed,,,,NaN,NaN,NaN,NaN,NaN,,' // quoted_field(reason)
+        text = 'failed,,,,NaN,NaN,NaN,NaN,NaN,,NaN,,' // quoted_field(reason)
     end function failure_text
 
     !> NaN where there is nothing to divide by.

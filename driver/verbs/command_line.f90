@@ -9,8 +9,8 @@ module command_line
     public :: command, print_help, print_version, read_command_line
 
     type :: command
-        character(len=:), allocatable :: verb      !! run, point, sweep, fault, check, --help, or
-                                                   !! --version
+        character(len=:), allocatable :: verb      !! run, point, sweep, stability, fault, check,
+                                                   !! --help, or --version
         character(len=:), allocatable :: input     !! namelist file
         character(len=:), allocatable :: output    !! directory
         character(len=:), allocatable :: stem      !! of the names of the files that a run writes
@@ -32,7 +32,7 @@ contains
         wanted%output = ''
         wanted%verb = argument(1)
         select case (wanted%verb)
-        case ('run', 'point', 'sweep', 'fault', 'check')
+        case ('run', 'point', 'sweep', 'stability', 'fault', 'check')
             continue
         case ('--help', '-h', 'help')
             wanted%verb = '--help'
@@ -162,6 +162,7 @@ contains
             '                     [--resume] [--verify]', &
             '       stickslip point INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip sweep INPUT.nml [--output DIR] [--no-plot] [--quiet] [--jobs N]', &
+            '       stickslip stability INPUT.nml [--output DIR] [--no-plot] [--quiet]', &
             '       stickslip fault INPUT.nml [--output DIR] [--no-plot] [--quiet] [--resume]', &
             '       stickslip check INPUT.nml', &
             '       stickslip --help | --version', &
@@ -173,6 +174,8 @@ contains
             'sweep  runs INPUT.nml with every combination of the values in its group &sweep;', &
             '       writes STEM_sweep.csv, one row a combination, and STEM_sweep.png with its', &
             '       script; what was interrupted continues where it stopped', &
+            'stability  tells whether steady sliding of the slider is stable, and at which', &
+            '       stiffness, velocity, damping and mass that changes; input of run or sweep', &
             'fault  integrates a plane in an elastic medium that slips by itself; under mpirun', &
             '       on any number of processes; writes STEM_events.csv, _global.csv, stations', &
             'check  reads and validates INPUT.nml, and runs nothing', &

@@ -96,7 +96,7 @@ contains
             return
         end if
         call done%open(base // '.journal', 'stickslip ' // friction_version // new_line('a') &
-            // plan%input, known, problem)
+            // table_header(plan%axes) // new_line('a') // plan%input, known, problem)
         if (len(problem) > 0) problem = 'stickslip: ' // problem
         do i = 1, size(rows)
             rows(i)%text = ''

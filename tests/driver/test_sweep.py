@@ -15,7 +15,7 @@ import unittest
 from test_program import INPUTS, PROGRAM, Program, namelist
 
 COLUMNS = ('status,regime,events,late_events,period,stress_drop,peak_velocity,mean_force,energy_defect,'
-           'warnings,reason')
+           'stability,growth_rate,warnings,reason')
 TWO_KEYS = {('sweep', 'key'): "'drive%velocity'", ('sweep', 'values'): '0.5, 1, 2, 4',
             ('sweep', 'key2'): "'slider%stiffness'", ('sweep', 'values2'): '1, 2, 4'}
 

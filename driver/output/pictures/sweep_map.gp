@@ -37,7 +37,9 @@ plot file using (regime("stick-slip") ? right(0) : NaN):(up(0)):(0.5):(0.5) \
      file using (regime("steady") ? right(0) : NaN):(up(0)):(0.5):(0.5) \
          with boxxyerror fillstyle solid noborder linecolor "#56b4e9" title "steady", \
      file using (regime("") ? right(0) : NaN):(up(0)):(0.5):(0.5) \
-         with boxxyerror fillstyle solid noborder linecolor "gray60" title "failed"
+         with boxxyerror fillstyle solid noborder linecolor "gray60" title "failed", \
+     file using (stringcolumn("stability") eq "unstable" ? right(0) : NaN):(up(0)) \
+         with points pointtype 7 pointsize 0.5 linecolor "black" title "unstable steady sliding"
 set key off
 unset logscale cb
 if (log_1) { set logscale cb }

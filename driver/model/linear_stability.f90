@@ -1,0 +1,379 @@
+!> Is steady sliding stable? Eigenvalues of the rate equations of one block about it, and the values
+!> of a key of the input at which that changes (docs/stability.md).
+module linear_stability
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : prop_alpha_t
+    use smooth_function, only : find_root, function_of_one, values
+    use steady_sliding, only : contact_response, find_steady_sliding, sliding_case
+    implicit none
+    private
+
+    public :: analyse, critical_value, find_critical, stability
+
+    integer, parameter :: most_states = 5
+
+    !> What becomes of small disturbances.
+    integer, parameter, public :: undecided = 0   !! there is no steady sliding
+    integer, parameter, public :: stable = 1      !! they die away
+    integer, parameter, public :: neutral = 2     !! they neither grow nor die away
+    integer, parameter, public :: unstable = 3    !! they grow
+    character(len=8), parameter, public :: verdicts(0:3) = [character(len=8) :: 'none', 'stable', &
+        'neutral', 'unstable']
+
+    type :: stability
+        type(contact_response) :: contact
+        complex(dp), allocatable :: eigenvalues(:)   !! the one that grows fastest comes first [1/T]
+        real(dp), allocatable :: uncertain(:)        !! how far round-off may have moved them [1/T]
+        real(dp) :: growth = 0.0_dp       !! the largest real part [1/T]
+        real(dp) :: frequency = 0.0_dp    !! of that disturbance; 0: it does not swing [1/T]
+        integer :: verdict = undecided
+        character(len=:), allocatable :: problem   !! why there is no steady sliding; or empty
+    end type stability
+
+    !> A disturbance of a state or, in its place, its rate. What follows from the rest is left out.
+    type :: disturbance
+        real(dp) :: extension = 0.0_dp   !! of the drive spring [L]
+        real(dp) :: velocity = 0.0_dp    !! of the block; no state without mass [L/T]
+        real(dp) :: traction = 0.0_dp    !! of the contact; a state where it depends on the slip
+                                         !! rate and has a spring [F/L^2]
+        real(dp) :: memory(2) = 0.0_dp   !! of the law
+    end type disturbance
+
+    !> A value of a key at which steady sliding becomes stable or unstable.
+    type :: critical_value
+        real(dp) :: value = 0.0_dp
+        logical :: stable_above = .false.
+    end type critical_value
+
+    !> Growth over the logarithm of a key's value.
+    type, extends(function_of_one) :: growth_over
+        type(sliding_case), pointer :: this => null()   !! changed, and given back as it was
+        character(len=:), allocatable :: key
+        type(stability), pointer :: result => null()    !! at the last value asked for
+        logical :: same_contact = .false.   !! whatever the value: it is known
+        logical :: by_verdict = .false.     !! 1 where unstable, else -1, in place of the growth
+    contains
+        procedure :: at => growth_at
+    end type growth_over
+
+    interface
+        !> LAPACK: eigenvalues of a general matrix.
+        subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
+            import :: dp
+            implicit none
+            character(len=1), intent(in) :: jobvl, jobvr
+            integer, intent(in) :: n, lda, ldvl, ldvr, lwork
+            real(dp), intent(inout) :: a(lda, n)
+            real(dp), intent(out) :: wr(n), wi(n), vl(ldvl, n), vr(ldvr, n), work(lwork)
+            integer, intent(out) :: info
+        end subroutine dgeev
+    end interface
+
+contains
+
+    !> Steady sliding of a case, and its eigenvalues.
+    subroutine analyse(this, result)
+        type(sliding_case), intent(in) :: this   !! prepared
+        type(stability), intent(out) :: result
+
+        allocate (result%eigenvalues(0))
+        call find_steady_sliding(this, result%contact, result%problem)
+        if (len(result%problem) == 0) call judge(this, result)
+    end subroutine analyse
+
+    !> Stable or not, once it is known how the contact answers.
+    subroutine judge(this, result)
+        type(sliding_case), intent(in) :: this
+        type(stability), intent(inout) :: result   !! with its contact
+        real(dp) :: jacobian(most_states, most_states)
+        integer :: n
+
+        result%verdict = undecided
+        call fill_jacobian(this, result%contact, jacobian, n, result%problem)
+        if (len(result%problem) == 0) call find_eigenvalues(jacobian, n, result)
+        if (len(result%problem) > 0) return
+        result%growth = real(result%eigenvalues(1), dp)
+        result%frequency = abs(aimag(result%eigenvalues(1))) / (8.0_dp * atan(1.0_dp))
+        result%verdict = stable
+        associate (growth => real(result%eigenvalues, dp))
+            if (any(growth >= -result%uncertain)) result%verdict = neutral
+            if (any(growth > result%uncertain)) result%verdict = unstable
+            if (snaps_back(this, result%contact)) result%verdict = unstable
+        end associate
+    end subroutine judge
+
+    !> Does friction fall faster with slip than the contact spring unloads? Then it jumps, whatever
+    !> the block does.
+    pure function snaps_back(this, contact) result(snaps)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        logical :: snaps
+
+        snaps = .not. contact%follows_velocity .and. .not. depends_on_rate(contact) .and. &
+            this%props(prop_alpha_t) + dot_product(contact%by_memory, contact%rate_by_rate) &
+            <= 0.0_dp
+    end function snaps_back
+
+    pure function depends_on_rate(contact) result(depends)
+        type(contact_response), intent(in) :: contact
+        logical :: depends
+
+        depends = abs(contact%by_rate) > 0.0_dp
+    end function depends_on_rate
+
+    !> Do the forces of the two springs alone decide the motion, without mass and damper?
+    pure function in_series(this) result(yes)
+        type(sliding_case), intent(in) :: this
+        logical :: yes
+
+        yes = .not. (this%mass > 0.0_dp .or. this%damping > 0.0_dp)
+    end function in_series
+
+    !> The rates of disturbances of one state after the other.
+    subroutine fill_jacobian(this, contact, jacobian, n, problem)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        real(dp), intent(out) :: jacobian(most_states, most_states)
+        integer, intent(out) :: n                                !! states
+        character(len=:), allocatable, intent(out) :: problem
+        type(disturbance) :: rates
+        logical :: failed
+        integer :: i, j
+
+        problem = ''
+        jacobian = 0.0_dp
+        n = size(packed(this, contact, rates))
+        if (n == 0) problem = 'the block has no motion of its own'
+        do i = 1, n
+            call rates_of(this, contact, unpacked(this, contact, [(merge(1.0_dp, 0.0_dp, j == i), &
+                j = 1, n)]), rates, failed)
+            if (failed) then
+                problem = 'nothing but the velocity of the drive moves the block: it needs a mass'
+                return
+            end if
+            jacobian(:n, i) = packed(this, contact, rates)
+        end do
+    end subroutine fill_jacobian
+
+    !> What is a state of its own, one number after the other.
+    pure function packed(this, contact, d) result(x)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        type(disturbance), intent(in) :: d
+        real(dp), allocatable :: x(:)
+
+        x = pack([d%extension, d%velocity, d%traction, d%memory], states(this, contact))
+    end function packed
+
+    pure function unpacked(this, contact, x) result(d)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        real(dp), intent(in) :: x(:)
+        type(disturbance) :: d
+        real(dp) :: all(most_states)
+
+        all = unpack(x, states(this, contact), 0.0_dp)
+        d = disturbance(all(1), all(2), all(3), all(4:5))
+    end function unpacked
+
+    pure function states(this, contact) result(are)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        logical :: are(most_states)
+        logical :: sprung
+
+        sprung = .not. contact%follows_velocity
+        are = [.not. in_series(this) .or. .not. sprung .or. depends_on_rate(contact), &
+            this%mass > 0.0_dp, &
+            sprung .and. depends_on_rate(contact) .and. .not. in_series(this), &
+            contact%remembered >= 1, contact%remembered >= 2]
+    end function states
+
+    !> The rate equations in small disturbances d.
+    pure subroutine rates_of(this, contact, d, rates, failed)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        type(disturbance), intent(in) :: d
+        type(disturbance), intent(out) :: rates
+        logical, intent(out) :: failed   !! no velocity follows
+        real(dp) :: pull, at_rest, drift(2), traction, v, slip, softer, both, unloading
+
+        pull = this%stiffness * d%extension
+        at_rest = dot_product(contact%by_memory, d%memory)   ! traction without slip
+        drift = matmul(contact%rate_by_memory, d%memory)     ! of the memory, likewise
+        v = d%velocity
+        failed = .false.
+        associate (alpha => this%props(prop_alpha_t), s => this%area, c => this%damping)
+            softer = alpha / (alpha + this%stiffness / s)    ! what both springs are of one
+            if (contact%follows_velocity) then
+                failed = .not. this%mass > 0.0_dp .and. .not. abs(c + s * contact%by_rate) > 0.0_dp
+                if (failed) return
+                if (.not. this%mass > 0.0_dp) v = (pull - s * at_rest) / (c + s * contact%by_rate)
+                slip = v
+                traction = contact%by_rate * slip + at_rest
+            else if (depends_on_rate(contact)) then
+                traction = d%traction
+                if (in_series(this)) traction = pull / s
+                slip = (traction - at_rest) / contact%by_rate
+                if (.not. this%mass > 0.0_dp .and. c > 0.0_dp) v = (pull - s * traction) / c
+                if (in_series(this)) v = softer * slip
+                rates%traction = alpha * (v - slip)
+            else
+                traction = at_rest
+                if (.not. this%mass > 0.0_dp .and. c > 0.0_dp) v = (pull - s * traction) / c
+                both = alpha
+                if (in_series(this)) both = softer * this%stiffness / s
+                unloading = both + dot_product(contact%by_memory, contact%rate_by_rate)
+                failed = .not. abs(unloading) > 0.0_dp
+                if (failed) return
+                slip = -dot_product(contact%by_memory, drift)
+                if (.not. in_series(this)) slip = slip + alpha * v
+                slip = slip / unloading
+                if (in_series(this)) v = softer * slip
+            end if
+            rates%extension = -v
+            if (this%mass > 0.0_dp) rates%velocity = (pull - c * v - s * traction) / this%mass
+            rates%memory = drift + contact%rate_by_rate * slip
+        end associate
+    end subroutine rates_of
+
+    !> Eigenvalues, the largest real part first. Each is improved by its two eigenvectors: what is
+    !> left of round-off is that of the matrix entry by entry, however far its numbers are apart.
+    subroutine find_eigenvalues(jacobian, n, result)
+        real(dp), intent(in) :: jacobian(most_states, most_states)
+        integer, intent(in) :: n
+        type(stability), intent(inout) :: result
+        real(dp) :: matrix(most_states, most_states), re(most_states), im(most_states), &
+            left(most_states, most_states), right(most_states, most_states), work(16 * most_states)
+        complex(dp) :: x(n), y(n), product
+        integer :: info, i, first
+
+        info = 1
+        matrix = jacobian
+        if (all(abs(jacobian) <= sqrt(huge(work)))) call dgeev('V', 'V', n, matrix, most_states, &
+            re, im, left, most_states, right, most_states, work, size(work), info)
+        if (info /= 0) then
+            result%problem = 'the eigenvalues were not found'
+            return
+        end if
+        result%eigenvalues = cmplx(re(:n), im(:n), dp)
+        result%uncertain = abs(result%eigenvalues)
+        do i = 1, n
+            x = vector(right, i)
+            y = conjg(vector(left, i))
+            product = sum(y * x)
+            if (.not. abs(product) > 1.0e4_dp * epsilon(re)) cycle   ! two have met
+            result%eigenvalues(i) = sum(y * matmul(jacobian(:n, :n), x)) / product
+            result%uncertain(i) = 16.0_dp * epsilon(re) * dot_product(abs(y), &
+                matmul(abs(jacobian(:n, :n)), abs(x))) / abs(product)
+        end do
+        do i = 1, n
+            first = i - 1 + maxloc(real(result%eigenvalues(i:), dp), 1)
+            result%eigenvalues(i:first) = cshift(result%eigenvalues(i:first), -1)
+            result%uncertain(i:first) = cshift(result%uncertain(i:first), -1)
+        end do
+
+    contains
+
+        !> An eigenvector; those of a pair are kept as real and imaginary part.
+        function vector(table, k)
+            real(dp), intent(in) :: table(:, :)
+            integer, intent(in) :: k
+            complex(dp) :: vector(n)
+
+            if (im(k) > 0.0_dp) then
+                vector = cmplx(table(:n, k), table(:n, k + 1), dp)
+            else if (im(k) < 0.0_dp) then
+                vector = cmplx(table(:n, k - 1), -table(:n, k), dp)
+            else
+                vector = cmplx(table(:n, k), 0.0_dp, dp)
+            end if
+        end function vector
+
+    end subroutine find_eigenvalues
+
+    !> Values of a key between two others at which steady sliding becomes stable or unstable,
+    !> looked for on a logarithmic grid: those that stand closer together than that are missed.
+    subroutine find_critical(this, key, range, steps, found)
+        type(sliding_case), target, intent(inout) :: this   !! is given back as it was
+        character(len=*), intent(in) :: key                 !! that `this` knows
+        real(dp), intent(in) :: range(2)                    !! lowest and highest value, > 0
+        integer, intent(in) :: steps                        !! of the grid
+        type(critical_value), allocatable, intent(out) :: found(:)   !! rising
+        type(growth_over) :: growth
+        type(stability), target :: result
+        real(dp) :: x(2), y(values), sides(2), before
+        integer :: i
+
+        allocate (found(0))
+        before = this%value_of(key)
+        call prepare_growth(growth, this, key, result)
+        x = 0.0_dp
+        sides = 0.0_dp   ! the first place has none before it
+        do i = 0, steps
+            x = [x(2), log(range(1)) + i * (log(range(2) / range(1)) / steps)]
+            y = growth%at(x(2))
+            sides = [sides(2), y(1)]
+            if (.not. sides(1) * sides(2) < 0.0_dp) cycle
+            found = [found, critical_value(exp(change_between(growth, x)), sides(1) > 0.0_dp)]
+        end do
+        call this%set(key, before)
+    end subroutine find_critical
+
+    !> Growth that is taken by its verdict alone.
+    subroutine prepare_growth(growth, this, key, result)
+        type(growth_over), intent(out) :: growth
+        type(sliding_case), target, intent(in) :: this
+        character(len=*), intent(in) :: key
+        type(stability), target, intent(inout) :: result
+
+        growth%this => this
+        growth%key = key
+        growth%result => result
+        growth%by_verdict = .true.
+        growth%same_contact = any(key == [character(len=16) :: 'slider%mass', 'slider%stiffness', &
+            'slider%damping', 'slider%area'])
+        call analyse(this, result)
+        if (len(result%problem) > 0) growth%same_contact = .false.
+    end subroutine prepare_growth
+
+    !> Where the growth changes its sign or, if on one side nothing grows or dies away, where the
+    !> verdict changes.
+    function change_between(growth, x) result(place)
+        type(growth_over), intent(in) :: growth
+        real(dp), intent(in) :: x(2)
+        real(dp) :: place
+        type(growth_over) :: smooth
+        real(dp) :: low(values), high(values)
+
+        smooth = growth
+        smooth%by_verdict = .false.
+        low = smooth%at(x(1))
+        high = smooth%at(x(2))
+        if (low(1) * high(1) < 0.0_dp .and. low(2) * high(2) < 0.0_dp) then
+            place = find_root(smooth, x(1), x(2))
+        else
+            place = find_root(growth, x(1), x(2))
+        end if
+    end function change_between
+
+    !> The growth; and -1 where stable, 1 where unstable. 0 where nothing slides steadily.
+    function growth_at(self, x) result(y)
+        class(growth_over), intent(in) :: self
+        real(dp), intent(in) :: x   !! logarithm of the key's value
+        real(dp) :: y(values)
+
+        y = 0.0_dp
+        call self%this%set(self%key, exp(x))
+        if (self%same_contact) then
+            call judge(self%this, self%result)
+        else
+            call analyse(self%this, self%result)
+        end if
+        if (self%result%verdict == undecided) return
+        y(1) = merge(1.0_dp, -1.0_dp, self%result%verdict == unstable)
+        if (self%result%verdict /= neutral) y(2) = y(1)
+        if (.not. self%by_verdict) y(1) = self%result%growth
+    end function growth_at
+
+end module linear_stability
