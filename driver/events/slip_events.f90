@@ -75,12 +75,13 @@ contains
 
     !> The sense of the loading at the start, and the speed that the drive counts to have if it does
     !> not move at first.
-    pure subroutine give_sense(self, velocity)
+    pure subroutine give_sense(self, sense, speed)
         class(event_finder), intent(inout) :: self
-        real(dp), intent(in) :: velocity   !! of the drive when it first moves [L/T]
+        integer, intent(in) :: sense    !! 1 or -1
+        real(dp), intent(in) :: speed   !! of the drive when it first moves [L/T]
 
-        self%sense = merge(-1, 1, velocity < 0.0_dp)
-        self%speed = abs(velocity)
+        self%sense = sense
+        self%speed = speed
     end subroutine give_sense
 
     !> Takes in a step, and returns the events that are known to have ended in it.

@@ -9,7 +9,7 @@ module slip_observer
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
     use run_outcome, only : event_totals
-    use run_settings, only : settings
+    use run_settings, only : loading_sense, settings
     use slider_system, only : slider_state
     use slip_events, only : event_finder, moment, slip_event
     implicit none
@@ -44,19 +44,20 @@ contains
             * run%drive%largest_normal()
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
-        call self%finder%give_sense(run%drive%first_velocity())
+        call self%finder%give_sense(loading_sense(run), abs(run%drive%first_velocity()))
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
-        self%sense = senses(run%drive)
+        self%sense = senses(run%drive, loading_sense(run))
     end subroutine prepare
 
     !> In a hold the sense is that of the piece before.
-    pure function senses(drive) result(list)
+    pure function senses(drive, first) result(list)
         type(programme), intent(in) :: drive
+        integer, intent(in) :: first   !! sense of the loading at the start
         integer :: list(drive%listed)
         integer :: sense, i
 
-        sense = merge(-1, 1, drive%first_velocity() < 0.0_dp)
+        sense = first
         do i = 1, drive%listed
             if (drive%velocity(i) > 0.0_dp) sense = 1
             if (drive%velocity(i) < 0.0_dp) sense = -1
@@ -86,12 +87,14 @@ contains
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
+        real(dp) :: force   !! mean over the blocks [F]
         integer :: i
 
         if (new%normal <= 0.0_dp) return
         i = min(self%drive%listed, self%drive%piece(new%time - round_off * (new%time - old%time)))
-        call self%friction(i)%take(self%sense(i) * sum(new%friction) &
-            / (size(new%friction) * self%area * new%normal))
+        force = sum(new%friction) / size(new%friction)
+        if (abs(force) > 0.0_dp) force = self%sense(i) * force   ! and no -0 in a table
+        call self%friction(i)%take(force / (self%area * new%normal))
     end subroutine measure
 
     !> What the finder looks at, as means over the blocks.

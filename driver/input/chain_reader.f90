@@ -21,7 +21,7 @@ contains
         character(len=:), allocatable :: ends
 
         if (.not. file%has_group(group)) return
-        if (.not. file%given(group, 'n_blocks')) call file%require(group, 'n_blocks')
+        call file%require(group, 'n_blocks')
         call file%get_integer(group, 'n_blocks', blocks%n_blocks, between(1.0_dp, 1.0e6_dp), &
             default=1)
         call file%get_real(group, 'coupling', blocks%coupling, at_least(0.0_dp))

@@ -40,8 +40,7 @@ contains
 
         do i = 1, size(names)
             do k = 1, size(ends)
-                if (file%given(group, trim(names(i)) // ends(k))) call file%reject(group, &
-                    trim(names(i)) // ends(k), 'needs a file')
+                call file%refuse(group, trim(names(i)) // ends(k), 'needs a file')
             end do
         end do
     end subroutine refuse_column_keys

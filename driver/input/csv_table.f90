@@ -13,12 +13,13 @@ module csv_table
     use number_reader, only : read_number
     use number_text, only : whole_text
     use printable_text, only : lower, printable
-    use whole_file, only : plain_text, read_whole_file
+    use whole_file, only : read_whole_file
     implicit none
     private
 
-    public :: column_request, line_text, read_table, read_table_text, table
+    public :: column_request, line_text, read_table, table
 
+    real(dp), parameter, public :: largest = 1.0e100_dp   !! number that is taken
     integer, parameter :: most_faults = 20
     character(len=1), parameter :: line_feed = new_line('a'), tab = achar(9)
     character(len=*), parameter :: separators = tab // ';, '   ! in the order of preference
@@ -40,6 +41,7 @@ module csv_table
         integer, allocatable :: lines(:)                      !! of the file, one a row
         type(fault), allocatable :: faults(:)                 !! each with its line
         integer :: header_line = 0                            !! with the names of the columns
+        character(len=:), allocatable :: titles               !! all of its names, for messages
     contains
         procedure :: column, add_fault
     end type table
@@ -49,6 +51,7 @@ module csv_table
         character(len=1) :: separator = ','
         integer :: header_line = 0
         type(line_text), allocatable :: titles(:)     !! of the columns
+        logical :: sound = .true.                     !! all of their quotes are closed
         integer :: least_cells = 0                    !! up to the last column with a name
         integer, allocatable :: places(:)             !! of the columns asked for; 0: not there
         integer :: mark = 0                           !! 1 decimal point, 2 comma; 0 none so far
@@ -73,37 +76,18 @@ contains
         type(column_request), intent(in) :: requests(:)
         type(table), intent(out) :: read_in
         character(len=:), allocatable :: text, problem
-
-        call read_whole_file(path, text, problem)
-        call take_text(text, problem, requests, read_in)
-    end subroutine read_table
-
-    !> The same from a text in memory.
-    subroutine read_table_text(bytes, requests, read_in)
-        character(len=*), intent(in) :: bytes
-        type(column_request), intent(in) :: requests(:)
-        type(table), intent(out) :: read_in
-        character(len=:), allocatable :: text, problem
-
-        call plain_text(bytes, text, problem)
-        call take_text(text, problem, requests, read_in)
-    end subroutine read_table_text
-
-    subroutine take_text(text, problem, requests, read_in)
-        character(len=*), intent(in) :: text, problem
-        type(column_request), intent(in) :: requests(:)
-        type(table), intent(inout) :: read_in
         type(file_form) :: form
         type(line_cells) :: cells
         integer :: first, last, line, rows
 
+        call read_whole_file(path, text, problem)
         allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
         if (len(problem) > 0) then
             call read_in%add_fault(0, problem)
             return
         end if
         call find_header(text, requests, form, read_in)
-        if (size(read_in%faults) > 0) return
+        if (size(read_in%faults) > 0 .or. count(form%places > 0) < min(2, size(requests))) return
         deallocate (read_in%values, read_in%lines)
         allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
         rows = 0
@@ -118,7 +102,7 @@ contains
         end do
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
-    end subroutine take_text
+    end subroutine read_table
 
     !> Moves on to the next line.
     pure subroutine next_line(text, first, last, line)
@@ -157,11 +141,12 @@ contains
         type(table), intent(inout) :: read_in
         integer, parameter :: most_lines = 200
         type(file_form) :: trial
-        integer :: best, rank, first, last, line, first_text, i
+        integer :: best, rank, first, last, line, first_text, open_quote, i
         logical :: comment
 
         best = 0
         first_text = 0
+        open_quote = 0
         line = 0
         last = -1
         do while (last < len(text) .and. line < most_lines .and. best <= size(requests))
@@ -171,6 +156,9 @@ contains
             comment = is_no_row(text(first:last))
             if (comment) first = first + i - 1
             if (first_text == 0 .and. .not. comment) first_text = line
+            if (open_quote == 0) then
+                if (mod(count([(text(i:i) == '"', i = first, last)]), 2) == 1) open_quote = line
+            end if
             do i = 1, len(separators)
                 trial%separator = separators(i:i)
                 trial%header_line = line
@@ -187,8 +175,13 @@ contains
             end do
         end do
         read_in%header_line = form%header_line
+        read_in%titles = ''
+        if (allocated(form%titles)) read_in%titles = list_of(form%titles)
         if (first_text == 0) then
             call read_in%add_fault(0, 'is empty')
+        else if (open_quote > 0 .and. best < min(2, size(requests)) .or. .not. form%sound) then
+            call read_in%add_fault(merge(open_quote, form%header_line, form%sound), &
+                'a quote is not closed in this line')
         else if (best == 0) then
             call read_in%add_fault(first_text, 'no line of column names is found from here on: ' &
                 // "column '" // title_of(requests(1)) // "' is missing")
@@ -210,6 +203,7 @@ contains
         call split(text, first, last, form%separator, cells)
         if (allocated(form%titles)) deallocate (form%titles, form%places)
         allocate (form%titles(cells%n), form%places(size(requests)))
+        form%sound = cells%sound
         form%least_cells = 0
         do i = 1, cells%n
             form%titles(i)%text = text(cells%first(i):cells%last(i))
@@ -279,8 +273,7 @@ contains
             title = title_of(requests(i))
             if (form%places(i) == 0) then
                 if (title /= requests(i)%name) call read_in%add_fault(form%header_line, &
-                    "column '" // printable(title) // "' is missing: there are " &
-                    // list_of(form%titles))
+                    "column '" // printable(title) // "' is missing: there are " // read_in%titles)
                 cycle
             end if
             name%text = requests(i)%name
@@ -386,7 +379,14 @@ contains
             column = column + 1
             call take_cell(text(cells%first(place):cells%last(place)), line, &
                 form%titles(place)%text, form, read_in%values(column, rows), read_in)
-            read_in%values(column, rows) = requests(i)%factor * read_in%values(column, rows)
+            associate (value => read_in%values(column, rows))
+                if (abs(value) > largest / max(1.0_dp, abs(requests(i)%factor))) then
+                    call read_in%add_fault(line, requests(i)%name // ': the number, times its ' &
+                        // 'factor, must not exceed 1e100')
+                else
+                    value = requests(i)%factor * value
+                end if
+            end associate
         end do
     end subroutine take_row
 

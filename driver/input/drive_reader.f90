@@ -2,7 +2,7 @@
 module drive_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use column_keys, only : read_column_keys, refuse_column_keys
-    use csv_table, only : column_request, read_table, table
+    use csv_table, only : column_request, largest, read_table, table
     use loading_programme, only : programme
     use namelist_input, only : any_number, at_least, above, namelist_file
     implicit none
@@ -45,10 +45,8 @@ contains
         else
             call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp), &
                 default=1.0_dp)
-            if (file%given(group, 'normal_frequency')) call file%reject(group, 'normal_frequency', &
-                'needs a normal_amplitude')
-            if (file%given(group, 'normal_phase')) call file%reject(group, 'normal_phase', &
-                'needs a normal_amplitude')
+            call file%refuse(group, 'normal_frequency', 'needs a normal_amplitude')
+            call file%refuse(group, 'normal_phase', 'needs a normal_amplitude')
         end if
     end subroutine read_oscillation
 
@@ -142,14 +140,12 @@ contains
 
         faults_before = size(file%faults)
         do i = 1, size(lists)
-            if (file%given(group, trim(lists(i)))) call file%reject(group, trim(lists(i)), &
-                'cannot stand beside file')
+            call file%refuse(group, trim(lists(i)), 'cannot stand beside file')
         end do
         call read_column_keys(file, group, columns, requests)
         if (len(path) == 0) return
         if (file%given(group, 'velocity_column')) then
-            if (file%given(group, 'displacement_column')) call file%reject(group, &
-                'displacement_column', 'cannot stand beside velocity_column')
+            call file%refuse(group, 'displacement_column', 'cannot stand beside velocity_column')
             requests = requests([1, 2, 4])
         else if (file%given(group, 'displacement_column')) then
             requests = requests([1, 3, 4])
@@ -169,10 +165,10 @@ contains
         integer :: i
 
         if (rows%column('time') == 0) call rows%add_fault(rows%header_line, &
-            "column 'time' is missing")
+            "column 'time' is missing: there are " // rows%titles)
         if (rows%column('velocity') == 0 .and. rows%column('displacement') == 0) then
             call rows%add_fault(rows%header_line, "needs one of the columns 'velocity' and " &
-                // "'displacement'")
+                // "'displacement': there are " // rows%titles)
         else if (rows%column('velocity') > 0 .and. rows%column('displacement') > 0) then
             call rows%add_fault(rows%header_line, "takes one of the columns 'velocity' and " &
                 // "'displacement': choose by velocity_column or displacement_column")
@@ -182,7 +178,8 @@ contains
             if (file%given(group, trim(columns(i)) // '_factor')) call rows%add_fault( &
                 rows%header_line, "no column '" // trim(columns(i)) // "' for its factor")
         end do
-        if (size(rows%lines) < 2) call rows%add_fault(0, 'has fewer than two rows of numbers')
+        if (size(rows%faults) == 0 .and. size(rows%lines) < 2) call rows%add_fault(0, &
+            'has fewer than two rows of numbers')
     end subroutine check_columns
 
     subroutine check_rows(rows)
@@ -192,8 +189,12 @@ contains
         time = rows%column('time')
         normal = rows%column('normal')
         do i = 2, size(rows%lines)
-            if (rows%values(time, i) > rows%values(time, i - 1)) cycle
-            call rows%add_fault(rows%lines(i), 'time must be larger than in the row before')
+            if (.not. rows%values(time, i) > rows%values(time, i - 1)) then
+                call rows%add_fault(rows%lines(i), 'time must be larger than in the row before')
+            else if (any(abs(rows%values(:, i) - rows%values(:, i - 1)) > largest &
+                * (rows%values(time, i) - rows%values(time, i - 1)))) then
+                call rows%add_fault(rows%lines(i), 'changes faster than by 1e100 in unit time')
+            end if
         end do
         if (normal == 0) return
         do i = 1, size(rows%lines)

@@ -41,13 +41,8 @@ contains
     subroutine read_fault_plan(file, plan)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(out) :: plan
-        character(len=8), parameter :: needed(3) = ['fault   ', 'friction', 'time    ']
-        integer :: i
 
-        do i = 1, size(needed)
-            if (.not. file%has_group(trim(needed(i)))) call file%add_fault(0, 'group &' &
-                // trim(needed(i)) // ' is missing')
-        end do
+        call file%require_groups(['fault   ', 'friction', 'time    '])
         call read_surroundings(file, plan)
         call read_constants(file, plan)
         call read_initial(file, plan)
@@ -356,7 +351,6 @@ contains
         type(fault_plan), intent(inout) :: plan
         real(dp), allocatable :: contours(:)
 
-        if (.not. file%has_group('output')) continue
         call file%get_reals('output', 'stations', plan%station_z, at_least(0.0_dp))
         if (any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
             'must be from 0 to width')

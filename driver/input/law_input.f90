@@ -100,7 +100,7 @@ contains
         integer :: i
 
         do i = 1, size(keys)
-            if (file%given(group, trim(keys(i)))) call file%reject(group, trim(keys(i)), &
+            call file%refuse(group, trim(keys(i)), &
                 'has no effect on blocks, which slide along one line: it is for the verb point')
         end do
     end subroutine refuse_orthotropy

@@ -42,7 +42,8 @@ module namelist_input
     contains
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
-        procedure :: has_group, given, require, reject, add_fault, refuse_unknown, describe_faults
+        procedure :: has_group, given, require, require_groups, reject, refuse, add_fault, &
+            refuse_unknown, describe_faults
         procedure :: line_of_group, belongs_elsewhere, beside
         procedure :: substitute, value_of, remove, listing
     end type namelist_file
@@ -95,15 +96,9 @@ contains
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group
         logical :: found
-        integer :: i
 
         call note(self, group, '')
-        found = .false.
-        do i = 1, size(self%groups)
-            if (self%groups(i)%name /= group) cycle
-            self%groups(i)%known = .true.
-            found = .true.
-        end do
+        found = self%line_of_group(group) > 0
     end function has_group
 
     !> Where does the group start? 0: the file does not have it.
@@ -134,13 +129,26 @@ contains
         class(namelist_file), intent(in) :: self
         character(len=*), intent(in) :: group, key
         logical :: found
+        integer, allocatable :: mine(:)
+
+        call find(self, group, key, mine)
+        found = size(mine) > 0
+    end function given
+
+    !> The assignments to a key, as places in the list of entries.
+    pure subroutine find(self, group, key, places)
+        class(namelist_file), intent(in) :: self
+        character(len=*), intent(in) :: group, key
+        integer, allocatable, intent(out) :: places(:)
+        logical, allocatable :: wanted(:)
         integer :: i
 
-        found = .false.
+        allocate (wanted(size(self%entries)))
         do i = 1, size(self%entries)
-            if (self%entries(i)%group == group .and. self%entries(i)%key == key) found = .true.
+            wanted(i) = self%entries(i)%group == group .and. self%entries(i)%key == key
         end do
-    end function given
+        places = pack([(i, i = 1, size(self%entries))], wanted)
+    end subroutine find
 
     !> A number. Without a default, leaving the key out is a fault.
     subroutine get_real(self, group, key, value, allowed, default)
@@ -149,7 +157,9 @@ contains
         real(dp), intent(out) :: value
         type(rule), intent(in) :: allowed
         real(dp), intent(in), optional :: default
-        real(dp), allocatable :: values(:)
+        type(value_token) :: token
+        character(len=:), allocatable :: why
+        logical :: found
 
         value = 0.0_dp
         if (present(default)) value = default
@@ -158,15 +168,10 @@ contains
             if (.not. present(default)) call self%require(group, key)
             return
         end if
-        if (has_subscript(self, group, key)) then
-            call self%reject(group, key, 'takes one value, and no subscript')
-            return
-        end if
-        call self%get_reals(group, key, values, allowed)
-        if (size(values) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole_text(size(values)))
-        end if
-        if (size(values) > 0) value = values(1)
+        call take_one(self, group, key, token, found)
+        if (.not. found) return
+        call take_number(token, allowed, value, found, why)
+        if (len(why) > 0) call self%reject(group, key, why)
     end subroutine get_real
 
     !> A list of numbers; empty if the key is not given or one of its values is no number.
@@ -220,19 +225,28 @@ contains
         sound = sound .and. len(why) == 0
     end subroutine take_number
 
-    !> Does a key of one value have a subscript?
-    pure function has_subscript(self, group, key) result(found)
-        class(namelist_file), intent(in) :: self
+    !> The value of a key that takes one.
+    subroutine take_one(self, group, key, token, found)
+        class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        logical :: found
-        integer :: i
+        type(value_token), intent(out) :: token
+        logical, intent(out) :: found   !! false if the key is not given, or something is wrong
+        type(value_token), allocatable :: tokens(:)
+        integer, allocatable :: mine(:)
 
         found = .false.
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
-            found = found .or. self%entries(i)%subscripted
-        end do
-    end function has_subscript
+        call find(self, group, key, mine)
+        if (any(self%entries(mine)%subscripted)) then
+            call note(self, group, key)
+            call self%reject(group, key, 'takes one value, and no subscript')
+            return
+        end if
+        call gather(self, group, key, tokens)
+        found = size(tokens) == 1
+        if (found) token = tokens(1)
+        if (size(tokens) > 1) call self%reject(group, key, 'takes one value, not ' &
+            // whole_text(size(tokens)))
+    end subroutine take_one
 
     !> A whole number.
     subroutine get_integer(self, group, key, value, allowed, default)
@@ -261,15 +275,15 @@ contains
         character(len=:), allocatable, intent(out) :: value
         character(len=*), intent(in) :: choices(:)
         character(len=*), intent(in) :: default
-        integer, allocatable :: places(:)
+        type(value_token) :: token
+        integer :: place
+        logical :: found
 
         value = default
-        call self%get_choices(group, key, places, choices)
-        if (size(places) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole_text(size(places)))
-        else if (size(places) == 1) then
-            value = trim(choices(places(1)))
-        end if
+        call take_one(self, group, key, token, found)
+        if (.not. found) return
+        call take_choice(self, group, key, token, choices, place)
+        if (place > 0) value = trim(choices(place))
     end subroutine get_choice
 
     !> A list of texts of which each is one of a few, as places in `choices`; empty if the key is
@@ -280,44 +294,52 @@ contains
         integer, allocatable, intent(out) :: places(:)
         character(len=*), intent(in) :: choices(:)
         type(value_token), allocatable :: tokens(:)
-        character(len=:), allocatable :: list
         integer :: i
 
-        list = "'" // trim(choices(1)) // "'"
-        do i = 2, size(choices)
-            list = list // ", '" // trim(choices(i)) // "'"
-        end do
-        if (size(choices) > 1) list = 'one of ' // list
         call gather(self, group, key, tokens)
         allocate (places(size(tokens)))
         do i = 1, size(tokens)
-            places(i) = place_in(choices, lower(tokens(i)%text))
-            if (.not. tokens(i)%quoted) then
-                call self%reject(group, key, 'must be text in quotes, ' // list, token=tokens(i))
-                places(i) = 0
-            else if (places(i) == 0) then
-                call self%reject(group, key, 'must be ' // list, token=tokens(i))
-            end if
+            call take_choice(self, group, key, tokens(i), choices, places(i))
         end do
         if (any(places == 0)) places = [integer ::]
     end subroutine get_choices
+
+    subroutine take_choice(self, group, key, token, choices, place)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key
+        type(value_token), intent(in) :: token
+        character(len=*), intent(in) :: choices(:)
+        integer, intent(out) :: place   !! in `choices`; 0: it is none of them, a fault
+        character(len=:), allocatable :: list
+
+        do place = size(choices), 1, -1
+            if (choices(place) == lower(token%text) .and. token%quoted) return
+        end do
+        list = "'" // trim(choices(1)) // "'"
+        do place = 2, size(choices)
+            list = list // ", '" // trim(choices(place)) // "'"
+        end do
+        if (size(choices) > 1) list = 'one of ' // list
+        if (.not. token%quoted) list = 'text in quotes, ' // list
+        call self%reject(group, key, 'must be ' // list, token=token)
+        place = 0
+    end subroutine take_choice
 
     !> Any text in quotes; empty if the key is not given.
     subroutine get_text(self, group, key, value)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
         character(len=:), allocatable, intent(out) :: value
-        type(value_token), allocatable :: tokens(:)
+        type(value_token) :: token
+        logical :: found
 
         value = ''
-        call gather(self, group, key, tokens)
-        if (size(tokens) == 0) return
-        if (size(tokens) > 1) then
-            call self%reject(group, key, 'takes one value, not ' // whole_text(size(tokens)))
-        else if (.not. tokens(1)%quoted .or. len_trim(tokens(1)%text) == 0) then
-            call self%reject(group, key, 'must be text in quotes', token=tokens(1))
+        call take_one(self, group, key, token, found)
+        if (.not. found) return
+        if (token%quoted .and. len_trim(token%text) > 0) then
+            value = token%text
         else
-            value = tokens(1)%text
+            call self%reject(group, key, 'must be text in quotes')
         end if
     end subroutine get_text
 
@@ -327,21 +349,19 @@ contains
         character(len=*), intent(in) :: group, key
         logical, intent(out) :: value
         logical, intent(in) :: default
-        type(value_token), allocatable :: tokens(:)
+        type(value_token) :: token
+        logical :: found
         character(len=7), parameter :: yes(6) = [character(len=7) :: '.true.', '.true', '.t.', &
             '.t', 'true', 't']
         character(len=7), parameter :: no(6) = [character(len=7) :: '.false.', '.false', '.f.', &
             '.f', 'false', 'f']
 
         value = default
-        call gather(self, group, key, tokens)
-        if (size(tokens) == 0) return
-        value = any(yes == lower(tokens(1)%text))
-        if (size(tokens) > 1 .or. has_subscript(self, group, key)) then
-            call self%reject(group, key, 'takes one value, not ' // whole_text(size(tokens)))
-        else if (tokens(1)%quoted .or. .not. (value .or. any(no == lower(tokens(1)%text)))) then
-            call self%reject(group, key, 'must be .true. or .false.', token=tokens(1))
-        end if
+        call take_one(self, group, key, token, found)
+        if (.not. found) return
+        value = any(yes == lower(token%text)) .and. .not. token%quoted
+        if (.not. (value .or. any(no == lower(token%text))) .or. token%quoted) call self%reject( &
+            group, key, 'must be .true. or .false.')
     end subroutine get_logical
 
     !> Collects the values of a key in the order of their places, and says that the key is known.
@@ -350,37 +370,40 @@ contains
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
         type(value_token), allocatable, intent(out) :: tokens(:)
+        integer, allocatable :: mine(:)
         logical, allocatable :: filled(:)
         integer :: last, place, i, k
-        logical :: faulty, again
+        logical :: again
 
         call note(self, group, key)
+        call find(self, group, key, mine)
+        self%entries(mine)%known = .true.
         last = 0
-        faulty = .false.
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
-            self%entries(i)%known = .true.
-            faulty = faulty .or. self%entries(i)%faulty
-            last = max(last, place_of(self%entries(i), 1), &
-                place_of(self%entries(i), size(self%entries(i)%values)))
-        end do
-        if (faulty) last = 0
+        if (.not. any(self%entries(mine)%faulty)) then
+            do i = 1, size(mine)
+                associate (entry => self%entries(mine(i)))
+                    last = max(last, place_of(entry, 1), place_of(entry, size(entry%values)))
+                end associate
+            end do
+        end if
         allocate (tokens(last), filled(last))
         if (last == 0) return
         filled = .false.
         again = .false.
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
-            do k = 1, size(self%entries(i)%values)
-                place = place_of(self%entries(i), k)
-                again = again .or. filled(place)
-                tokens(place) = self%entries(i)%values(k)
-                filled(place) = .true.
-            end do
+        do i = 1, size(mine)
+            associate (entry => self%entries(mine(i)))
+                do k = 1, size(entry%values)
+                    place = place_of(entry, k)
+                    again = again .or. filled(place)
+                    tokens(place) = entry%values(k)
+                    filled(place) = .true.
+                end do
+            end associate
         end do
         if (again) call self%reject(group, key, 'is given twice')
-        if (.not. all(filled)) call self%reject(group, key, 'has gaps between its subscripts')
-        if (.not. all(filled)) tokens = [value_token ::]
+        if (all(filled)) return
+        call self%reject(group, key, 'has gaps between its subscripts')
+        tokens = [value_token ::]
     end subroutine gather
 
     !> Where in its list does the k-th value of an entry stand?
@@ -392,13 +415,16 @@ contains
         place = entry%first + (k - 1) * entry%stride
     end function place_of
 
-    !> Remembers that the program knows a key, or with an empty key a group.
+    !> Remembers that the program knows a key and its group, or with an empty key only the group.
     subroutine note(self, group, key)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
         type(known_key), allocatable :: more(:)
         integer :: i
 
+        do i = 1, size(self%groups)
+            if (self%groups(i)%name == group) self%groups(i)%known = .true.
+        end do
         do i = 1, self%n_keys
             if (self%keys(i)%key /= key .or. self%keys(i)%group /= group) cycle
             if (.not. allocated(self%keys(i)%hint)) return
@@ -432,41 +458,57 @@ contains
     subroutine require(self, group, key)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        integer :: i
+        integer :: line
 
         call note(self, group, key)
-        if (self%given(group, key)) return
-        do i = 1, size(self%groups)
-            if (self%groups(i)%name /= group) cycle
-            call self%add_fault(self%groups(i)%line, '&' // group // ' ' // key &
-                // ': is missing and has no default')
-            return
-        end do
+        line = self%line_of_group(group)
+        if (line > 0 .and. .not. self%given(group, key)) call self%add_fault(line, '&' // group &
+            // ' ' // key // ': is missing and has no default')
     end subroutine require
+
+    !> Notes a fault for each of the groups that is missing.
+    subroutine require_groups(self, groups)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: groups(:)
+        integer :: i
+
+        do i = 1, size(groups)
+            if (.not. self%has_group(trim(groups(i)))) call self%add_fault(0, 'group &' &
+                // trim(groups(i)) // ' is missing')
+        end do
+    end subroutine require_groups
+
+    !> Notes a fault if a key is given where it must not be.
+    subroutine refuse(self, group, key, why)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key, why
+
+        call note(self, group, key)
+        if (self%given(group, key)) call self%reject(group, key, why)
+    end subroutine refuse
 
     !> Notes a fault of a key, with its value and the rule that it breaks. That key is known then.
     subroutine reject(self, group, key, why, token)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key, why
         type(value_token), intent(in), optional :: token
+        integer, allocatable :: mine(:)
         character(len=:), allocatable :: value
         integer :: i, line
-        logical :: faulty
 
+        call find(self, group, key, mine)
+        self%entries(mine)%known = .true.
         line = 0
         value = ''
-        faulty = .false.
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
-            self%entries(i)%known = .true.
-            faulty = faulty .or. self%entries(i)%faulty
-            line = self%entries(i)%line
-            if (size(self%entries(i)%values) == 1) value = shown(self%entries(i)%values(1))
+        do i = 1, size(mine)
+            line = self%entries(mine(i))%line
+            if (size(self%entries(mine(i))%values) == 1) value = &
+                shown(self%entries(mine(i))%values(1))
         end do
         if (present(token)) value = shown(token)
         if (len(value) > 0) value = ' = ' // value
         call self%add_fault(line, '&' // group // ' ' // key // value // ': ' // why)
-        if (faulty) self%faults(size(self%faults))%hidden = .true.
+        if (any(self%entries(mine)%faulty)) self%faults(size(self%faults))%hidden = .true.
     end subroutine reject
 
     pure function shown(token) result(text)
@@ -517,7 +559,7 @@ contains
         if (len(key) > 0) least = max(1, len(key) / 3) + 1
         do i = 1, self%n_keys
             associate (known => self%keys(i))
-                if ((len(key) == 0) .neqv. (len_trim(known%key) == 0)) cycle
+                if (len(key) > 0 .and. len_trim(known%key) == 0) cycle
                 if (known%key == key .and. len(key) > 0) then
                     text = '; &' // trim(known%group) // ' has a key of that name'
                     if (allocated(known%hint)) text = '; ' // known%hint
@@ -609,13 +651,14 @@ contains
         integer, intent(in) :: i                               !! >= 1
         type(namelist_entry) :: entry
         type(group_seen) :: seen
+        integer, allocatable :: theirs(:)
         integer :: j, k
 
         entry%group = group
         entry%key = key
-        do j = 1, size(self%entries)
-            associate (from => self%entries(j))
-                if (from%group /= from_group .or. from%key /= from_key) cycle
+        call find(self, from_group, from_key, theirs)
+        do j = 1, size(theirs)
+            associate (from => self%entries(theirs(j)))
                 k = 1 + (i - from%first) / from%stride
                 if (k < 1 .or. k > size(from%values)) cycle
                 if (place_of(from, k) /= i) cycle
@@ -634,17 +677,11 @@ contains
     subroutine replace(self, entry)
         class(namelist_file), intent(inout) :: self
         type(namelist_entry), intent(in) :: entry
-        integer :: places, first, i
+        integer, allocatable :: mine(:)
 
-        places = 0
-        first = 0
-        do i = size(self%entries), 1, -1
-            if (self%entries(i)%group /= entry%group .or. self%entries(i)%key /= entry%key) cycle
-            places = places + 1
-            first = i
-        end do
-        if (places == 1) then
-            self%entries(first) = entry
+        call find(self, entry%group, entry%key, mine)
+        if (size(mine) == 1) then
+            self%entries(mine(1)) = entry
         else
             call self%remove(entry%group, entry%key)
             self%entries = [self%entries, entry]
@@ -656,12 +693,14 @@ contains
         class(namelist_file), intent(in) :: self
         character(len=*), intent(in) :: group, key
         character(len=:), allocatable :: text
+        integer, allocatable :: mine(:)
         integer :: i
 
         text = ''
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group /= group .or. self%entries(i)%key /= key) cycle
-            if (size(self%entries(i)%values) > 0) text = shown(self%entries(i)%values(1))
+        call find(self, group, key, mine)
+        do i = 1, size(mine)
+            if (size(self%entries(mine(i))%values) > 0) text = &
+                shown(self%entries(mine(i))%values(1))
         end do
     end function value_of
 
@@ -669,15 +708,13 @@ contains
     subroutine remove(self, group, key)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        type(namelist_entry), allocatable :: kept(:)
-        integer :: i
+        logical, allocatable :: kept(:)
+        integer, allocatable :: mine(:)
 
-        allocate (kept(0))
-        do i = 1, size(self%entries)
-            if (self%entries(i)%group == group .and. self%entries(i)%key == key) cycle
-            kept = [kept, self%entries(i)]
-        end do
-        call move_alloc(kept, self%entries)
+        call find(self, group, key, mine)
+        allocate (kept(size(self%entries)), source=.true.)
+        kept(mine) = .false.
+        self%entries = pack(self%entries, kept)
     end subroutine remove
 
     !> What the file says, without its comments and its layout: one line an assignment.
@@ -738,15 +775,5 @@ contains
         text = token%text
         if (token%quoted) text = "'" // text // "'"
     end function quoted
-
-    !> Which of the choices is it? 0: none.
-    pure function place_in(choices, text) result(place)
-        character(len=*), intent(in) :: choices(:), text
-        integer :: place
-
-        do place = size(choices), 1, -1
-            if (choices(place) == text) return
-        end do
-    end function place_in
 
 end module namelist_input

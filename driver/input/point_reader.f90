@@ -30,8 +30,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(point_run), intent(out) :: run
 
-        if (.not. file%has_group('friction')) call file%add_fault(0, 'group &friction is missing')
-        if (.not. file%has_group(group)) call file%add_fault(0, 'group &point is missing')
+        call file%require_groups(['friction', 'point   '])
         call read_friction(file, run%props)
         call file%get_logical(group, 'tangent', run%tangent, default=.false.)
         call file%get_integer(group, 'ndir', run%loading%ndir, between(2.0_dp, 3.0_dp), default=3)
@@ -77,8 +76,8 @@ contains
             call check_length(file, 'control_' // name, size(control), n)
             call check_length(file, 'target_' // name, size(target), n)
             if (i > loading%ndir) then
-                call refuse(file, 'control_' // name, 'needs ndir = 3')
-                call refuse(file, 'target_' // name, 'needs ndir = 3')
+                call file%refuse(group, 'control_' // name, 'needs ndir = 3')
+                call file%refuse(group, 'target_' // name, 'needs ndir = 3')
             else if (size(file%faults) == faults_before .and. n > 0) then
                 if (size(control) == 0) control = [by_displacement]
                 if (size(target) == 0) target = [0.0_dp]
@@ -114,13 +113,6 @@ contains
         if (size(values) == n) list = values
     end function spread_out
 
-    subroutine refuse(file, key, why)
-        type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: key, why
-
-        if (file%given(group, key)) call file%reject(group, key, why)
-    end subroutine refuse
-
     !> The path as a CSV file, named from the directory of the namelist.
     subroutine read_file(file, loading)
         type(namelist_file), intent(inout) :: file
@@ -134,16 +126,16 @@ contains
         call file%get_text(group, 'file', name)
         call file%get_integer(group, 'substeps', substeps, at_least(1.0_dp), default=1)
         if (.not. file%given(group, 'file')) then
-            call refuse(file, 'substeps', 'needs a file')
+            call file%refuse(group, 'substeps', 'needs a file')
             call refuse_column_keys(file, group, columns)
             return
         end if
         do i = 1, size(segment_keys)
-            call refuse(file, trim(segment_keys(i)), 'must not be given beside file')
+            call file%refuse(group, trim(segment_keys(i)), 'must not be given beside file')
         end do
         call read_column_keys(file, group, columns(:2 * loading%ndir + 1), requests)
         do i = 2, size(requests), 2
-            if (file%given(group, trim(columns(i)) // '_column')) call refuse(file, &
+            if (file%given(group, trim(columns(i)) // '_column')) call file%refuse(group, &
                 trim(columns(i + 1)) // '_column', 'cannot stand beside ' // trim(columns(i)) &
                 // '_column')
         end do
@@ -195,7 +187,7 @@ contains
             if (file%given(group, trim(columns(i)) // '_factor')) call table%add_fault( &
                 table%header_line, "no column '" // trim(columns(i)) // "' for its factor")
         end do
-        if (size(table%lines) == 0) call table%add_fault(0, &
+        if (size(table%faults) == 0 .and. size(table%lines) == 0) call table%add_fault(0, &
             'must hold rows of numbers below the names')
     end subroutine check_columns
 

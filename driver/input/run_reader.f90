@@ -22,15 +22,9 @@ contains
     subroutine read_settings(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(out) :: run
-        character(len=8), parameter :: needed(4) = ['friction', 'slider  ', 'drive   ', 'time    ']
         real(dp) :: normal
-        integer :: i
 
-        do i = 1, size(needed)
-            if (.not. file%has_group(trim(needed(i)))) then
-                call file%add_fault(0, 'group &' // trim(needed(i)) // ' is missing')
-            end if
-        end do
+        call file%require_groups(['friction', 'slider  ', 'drive   ', 'time    '])
         call read_friction(file, run%props)
         call refuse_orthotropy(file)
         call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
@@ -67,7 +61,6 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
 
-        if (file%has_group('events')) continue
         call file%get_real('events', 'drop', run%event_drop, above(0.0_dp), default=1.0e-3_dp)
         if (file%given('events', 'slip_rate')) call file%get_real('events', 'slip_rate', &
             run%event_slip_rate, above(0.0_dp))
@@ -173,10 +166,9 @@ contains
                 default=0.0_dp)
             start%spring_given = file%given(group, 'spring_force')
             if (run%mass <= 0.0_dp) then
-                if (start%spring_given) call file%reject(group, 'spring_force', &
+                call file%refuse(group, 'spring_force', &
                     'needs a mass > 0: without, it is the friction force')
-                if (file%given(group, 'velocity')) call file%reject(group, 'velocity', &
-                    'needs a mass > 0')
+                call file%refuse(group, 'velocity', 'needs a mass > 0')
             end if
         end associate
     end subroutine read_initial
@@ -206,8 +198,7 @@ contains
                 start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
                 if (start%mu > law%largest_coefficient) call file%reject(group, 'mu', &
                     'must not exceed the static friction coefficient')
-                if (file%given(group, 'r')) call file%reject(group, 'r', &
-                    'belongs to the law subloading')
+                call file%refuse(group, 'r', 'belongs to the law subloading')
             end if
             if (.not. allocated(run%drive%normal)) return
             if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
@@ -234,8 +225,8 @@ contains
             call read_adaptive(file, run)
         else
             call file%get_real(group, 'dt', run%dt, above(0.0_dp))
-            if (file%given(group, 'dt_min')) call file%reject(group, 'dt_min', 'needs rtol')
-            if (file%given(group, 'dt_max')) call file%reject(group, 'dt_max', 'needs rtol')
+            call file%refuse(group, 'dt_min', 'needs rtol')
+            call file%refuse(group, 'dt_max', 'needs rtol')
         end if
         run%n_steps = 0
         if (size(file%faults) > faults_before .or. .not. run%dt > 0.0_dp) return
@@ -263,10 +254,8 @@ contains
         run%rho_infinity = -1.0_dp
         if (file%given(group, 'rho_infinity')) then
             call file%get_real(group, 'rho_infinity', run%rho_infinity, between(0.0_dp, 1.0_dp))
-            if (file%given(group, 'beta')) call file%reject(group, 'beta', &
-                'follows from rho_infinity: give one of them')
-            if (file%given(group, 'gamma')) call file%reject(group, 'gamma', &
-                'follows from rho_infinity: give one of them')
+            call file%refuse(group, 'beta', 'follows from rho_infinity: give one of them')
+            call file%refuse(group, 'gamma', 'follows from rho_infinity: give one of them')
             if (run%mass <= 0.0_dp) call file%reject(group, 'rho_infinity', 'needs a mass > 0')
         end if
         call file%get_real(group, 'tolerance', run%tolerance, above(0.0_dp), default=1.0e-10_dp)

@@ -26,7 +26,7 @@ contains
         faults_before = size(file%faults)
         allocate (plan%axes(0), plan%runs(0))
         plan%input = ''
-        if (.not. file%has_group('sweep')) call file%add_fault(0, 'group &sweep is missing')
+        call file%require_groups(['sweep'])
         call read_axis(file, 'key', 'values', first)
         plan%axes = [plan%axes, first]
         if (file%given('sweep', 'key2') .or. file%given('sweep', 'values2')) then

@@ -13,7 +13,6 @@ contains
         type(namelist_file), intent(inout) :: file
         type(units), intent(inout) :: names
 
-        if (file%has_group('output')) continue
         names%length = name_of('length_unit', names%length)
         names%force = name_of('force_unit', names%force)
         names%time = name_of('time_unit', names%time)

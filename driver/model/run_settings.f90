@@ -8,7 +8,7 @@ module run_settings
     implicit none
     private
 
-    public :: next_row, settings
+    public :: loading_sense, next_row, settings
 
     type :: settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
@@ -43,6 +43,22 @@ module run_settings
     end type settings
 
 contains
+
+    !> 1 or -1: the sense in which the drive moves first; of one that never does, that in which its
+    !> spring pulls at the start, or else the block moves.
+    pure function loading_sense(run) result(sense)
+        type(settings), intent(in) :: run
+        integer :: sense
+        real(dp) :: senses(3)
+        integer :: i
+
+        sense = 1
+        senses = [run%drive%first_velocity(), run%initial%spring_force, run%initial%velocity]
+        do i = size(senses), 1, -1
+            if (senses(i) > 0.0_dp) sense = 1
+            if (senses(i) < 0.0_dp) sense = -1
+        end do
+    end function loading_sense
 
     !> The first multiple of `every` after a time; huge if there is none.
     pure function next_row(every, time) result(next)

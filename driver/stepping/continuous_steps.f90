@@ -14,7 +14,7 @@ module continuous_steps
         statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
     use law_facts, only : typical_coefficient
     use rosenbrock, only : rosenbrock_step
-    use run_settings, only : settings
+    use run_settings, only : loading_sense, settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
         memory, phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
         switches, unknowns, velocity
@@ -91,6 +91,7 @@ contains
             eq%rigid = run%rigid_contact
             eq%drive = run%drive
             eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
+            eq%forward = loading_sense(run)
             self%implicit = eq%surface%traits%stiff
             ! as the traction vanishes, the slip rates of rate-and-state friction have no bound;
             ! what is left out is an impulse, and of the order of the square
@@ -113,7 +114,7 @@ contains
             eq%phase = phase_stick
             if (eq%surface%traits%onset == onset_gradual) eq%phase = phase_slide
             if (start%normal <= self%open_below) eq%phase = phase_open
-            eq%sense = sign(1.0_dp, self%y(elastic))
+            eq%sense = eq%sense_of(self%y(elastic))
             if (eq%rigid) call take_off_spring(self, start)
         end associate
     end subroutine prepare
@@ -125,7 +126,7 @@ contains
         type(slider_state), intent(in) :: start
 
         associate (eq => self%equations)
-            eq%sense = sign(1.0_dp, start%v(1))
+            eq%sense = eq%sense_of(start%v(1))
             if (abs(start%v(1)) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
             self%y(elastic) = 0.0_dp
             if (.not. abs(start%v(1)) > 0.0_dp) self%y(velocity) = velocity_under(self, &
@@ -162,7 +163,7 @@ contains
             call eq%surface%law%resistance_at(eq%law_state_of(self%y, pressure), &
                 abs(self%y(velocity)), pressure, resistance, by_rate)
             if (resistance >= eq%surface%tau_max) eq%phase = phase_capped
-            eq%sense = sign(1.0_dp, self%y(velocity))
+            eq%sense = eq%sense_of(self%y(velocity))
             self%y(elastic) = eq%sense * min(resistance, eq%surface%tau_max) / eq%alpha
         end associate
     end subroutine hold_velocity
@@ -385,7 +386,8 @@ contains
         strength = self%equations%strength(self%y, pressure)
         growth = 0.0_dp
         if (strength < self%equations%surface%tau_max) growth = strength / pressure * pressure_rate
-        slides = self%equations%alpha * sign(1.0_dp, self%y(elastic)) * self%first(elastic) > growth
+        slides = self%equations%alpha * self%equations%sense_of(self%y(elastic)) &
+            * self%first(elastic) > growth
     end function would_slide
 
     !> Takes a step by the method in use.
@@ -582,7 +584,7 @@ contains
             if (which == 3) then
                 self%y(memory) = eq%surface%traits%kink
             else if (eq%phase == phase_stick) then
-                eq%sense = sign(1.0_dp, eq%traction(t, self%y))
+                eq%sense = eq%sense_of(eq%traction(t, self%y))
                 eq%phase = phase_slide
                 if (eq%surface%traits%onset == onset_yields .and. .not. strength &
                     < eq%surface%tau_max .and. .not. eq%rigid) eq%phase = phase_capped
@@ -593,7 +595,7 @@ contains
                 if (eq%rigid) self%y(velocity) = 0.0_dp
             else if (eq%phase == phase_slide) then
                 eq%phase = phase_capped
-                eq%sense = sign(1.0_dp, self%y(elastic))
+                eq%sense = eq%sense_of(self%y(elastic))
                 self%y(elastic) = eq%sense * eq%surface%tau_max / eq%alpha
                 if (eq%surface%traits%memory == 1) self%y(ratio) = min(1.0_dp, eq%surface%tau_max &
                     / (self%y(memory) * pressure))

@@ -2,7 +2,7 @@
 !> (Solving Ordinary Differential Equations II, section IV.7), for the rate equations of a block.
 module rosenbrock
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use slider_rates, only : controlled, slider_equations, unknowns
+    use slider_rates, only : controlled, elastic, extension, slider_equations, unknowns, velocity
     implicit none
     private
 
@@ -108,7 +108,8 @@ contains
         if (.not. all(abs(new) <= huge(error))) error = huge(error)
     end subroutine rosenbrock_step
 
-    !> Derivatives of the rates by the unknowns that act on them, and by time, by differences.
+    !> Derivatives of the rates by the unknowns that act on them, and by time, by differences: taken
+    !> in the sense of the loading, so that a mirrored motion has the mirrored steps.
     pure subroutine differentiate(equations, t, h, y, first, natural, j, by_time, failed)
         type(slider_equations), intent(in) :: equations
         real(dp), intent(in) :: t, h, y(unknowns), first(unknowns), natural(controlled)
@@ -116,12 +117,15 @@ contains
         real(dp), intent(out) :: by_time(unknowns)
         logical, intent(out) :: failed
         real(dp), parameter :: little = 1.0e-8_dp
-        real(dp) :: w(unknowns), dy(unknowns), step
+        integer, parameter :: mirrored(3) = [extension, velocity, elastic]
+        real(dp) :: w(unknowns), dy(unknowns), steps(controlled), step
         integer :: i
 
+        steps = little * max(abs(y(:controlled)), natural)
+        steps(mirrored) = equations%forward * steps(mirrored)
         do i = 1, controlled
             w = y
-            w(i) = y(i) + little * max(abs(y(i)), natural(i))
+            w(i) = y(i) + steps(i)
             step = w(i) - y(i)
             call equations%rates(t, w, dy, failed)
             if (failed) return

@@ -41,9 +41,10 @@ module slider_rates
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
         integer :: phase = phase_stick
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
+        real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs, &
-            follows_traction
+            follows_traction, sense_of
     end type slider_equations
 
     !> What a contact does to the block.
@@ -64,6 +65,17 @@ contains
         self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
             .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
     end subroutine enter
+
+    !> The sense of a motion or a force; of none, that of the loading: a mirrored motion has the
+    !> mirrored steps, to the last bit.
+    pure function sense_of(self, motion) result(sense)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: motion
+        real(dp) :: sense   !! 1 or -1
+
+        sense = self%forward
+        if (abs(motion) > 0.0_dp) sense = sign(1.0_dp, motion)
+    end function sense_of
 
     !> Velocity of the drive, pressure and its rate.
     pure subroutine inputs(self, t, drive_velocity, pressure, pressure_rate)
@@ -158,7 +170,7 @@ contains
         end if
         if (self%surface%traits%onset == onset_gradual) then
             sense = sign(1.0_dp, contact%traction)
-            if (.not. abs(contact%traction) > 0.0_dp) sense = sign(1.0_dp, contact%velocity)
+            if (.not. abs(contact%traction) > 0.0_dp) sense = self%sense_of(contact%velocity)
         else
             sense = self%sense
         end if
@@ -249,12 +261,12 @@ contains
             contact%traction = pull / self%area
         else
             contact%velocity = y(velocity)
-            if (self%surface%traits%onset == onset_gradual) sense = sign(1.0_dp, y(velocity))
+            if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(y(velocity))
             if (.not. self%mass > 0.0_dp) then
                 failed = self%surface%traits%onset /= onset_gradual
                 if (failed) return
                 contact%velocity = creep(self, state, pull, pressure)
-                sense = sign(1.0_dp, contact%velocity)
+                sense = self%sense_of(contact%velocity)
             end if
             contact%slip = sense * contact%velocity
             call self%surface%law%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
@@ -291,7 +303,7 @@ contains
         logical :: jumps
 
         contact%traction = self%alpha * y(elastic)
-        sense = sign(1.0_dp, contact%traction)
+        sense = self%sense_of(contact%traction)
         state = law_state_of(self, y, pressure)
         load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
         call self%surface%law%slip_rate(state, load, contact%slip, jumps)
@@ -337,7 +349,7 @@ contains
             load%traction = load%traction + misfit / (self%area + self%damping / by_rate)
             if (abs(misfit) <= 4.0_dp * epsilon(misfit) * abs(pull)) exit
         end do
-        v = sign(v, pull)
+        v = self%sense_of(pull) * v
     end function creep
 
     !> What the law knows of the contact.

@@ -117,7 +117,8 @@ contains
         problem = trim(message)
     end function why_not_opened
 
-    !> Takes a byte-order mark off, turns UTF-16 into UTF-8, and ends each line by a line feed. A
+    !> Takes a byte-order mark off, turns UTF-16 into UTF-8, and ends each line by a line feed.
+    !> UTF-16 without a mark shows in its first letters, each of which has a byte that is zero. A
     !> character 0 belongs to no text: `problem` tells its line.
     pure subroutine plain_text(bytes, text, problem)
         character(len=*), intent(in) :: bytes
@@ -132,6 +133,10 @@ contains
             call decode_utf16(bytes(3:), 1, text)
         else if (index(bytes, big_endian_mark) == 1) then
             call decode_utf16(bytes(3:), 2, text)
+        else if (has_zeros(bytes, [.false., .true., .false., .true.])) then
+            call decode_utf16(bytes, 1, text)
+        else if (has_zeros(bytes, [.true., .false., .true., .false.])) then
+            call decode_utf16(bytes, 2, text)
         else if (index(bytes, utf8_mark) == 1) then
             text = bytes(4:)
         else
@@ -158,6 +163,17 @@ contains
         end do
         text = text(:n)
     end subroutine plain_text
+
+    !> Are these of the first bytes zero, and no others?
+    pure function has_zeros(bytes, zero) result(yes)
+        character(len=*), intent(in) :: bytes
+        logical, intent(in) :: zero(:)
+        logical :: yes
+        integer :: i
+
+        yes = len(bytes) >= size(zero)
+        if (yes) yes = all([((bytes(i:i) == achar(0)) .eqv. zero(i), i = 1, size(zero))])
+    end function has_zeros
 
     !> Turns UTF-16 into UTF-8. What is no character becomes U+FFFD.
     pure subroutine decode_utf16(bytes, low, text)

@@ -19,6 +19,9 @@ class EventsOfRuns(Program):
         self.said = result.stdout
         return [{key: float(value) for key, value in row.items()} for row in self.rows(f'case_out/{stem}_events.csv')]
 
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
     def counted(self):
         return int(self.said.split('slip events')[1].split()[0])
 
@@ -40,6 +43,32 @@ class Events(EventsOfRuns):
                 self.assertAlmostEqual(event['peak_velocity'], 46.8, delta=0.3)
                 self.assertAlmostEqual(event['slip'], 3.12, delta=1e-2)
                 self.assertAlmostEqual(event['stress_drop'], 3.0e-3, delta=2e-5)
+
+    def test_a_mirrored_motion_is_the_mirror_image_to_the_last_bit(self):
+        block = '&slider mass=1e-3, stiffness=3, damping=0.1, area=1000, normal_traction=0.01 / '
+        creeping = "&friction law='rate_and_state' alpha_n=1 alpha_t=1 a=0.0153 b=0.0292 d_c=0.0283 v0=0.1 f0=0.6 CONTACT/ "
+        self.write('rig.csv', 'time,displacement,normal\n0,0,.01\n2,0,.01\n3,1,.02\n5,2,.02\n6,1,.01\n')
+        for text in (
+                creeping.replace('CONTACT', '') + block.replace('mass=1e-3', 'mass=0')
+                + '&drive velocity=Sx0.5, Sx0, Sx-0.1 duration=6, 2, 4 normal_amplitude=0.003 normal_frequency=0.7 / '
+                '&time t_end=12, rtol=1e-5 /',
+                creeping.replace('CONTACT', "contact='rigid' ") + block + "&drive file='rig.csv' displacement_factor=Sx1 / "
+                '&time t_end=5, rtol=1e-4 /',
+                "&friction law='static_kinetic' alpha_n=1 alpha_t=1 mu_s=0.4 mu_k=0.346 d_c=3.12 tau_max=0.0038 / " + block
+                + '&drive velocity=Sx0, Sx1 duration=2, 6 normal=0.01, 0 normal_change="ramp" / &time t_end=8, rtol=1e-4 /',
+                BLOCK + '&drive velocity=Sx0 / &initial velocity=Sx2 / &time t_end=2, dt=2e-3 /',
+                BLOCK + '&drive velocity=Sx0 / &initial spring_force=Sx9 / &time t_end=2, rtol=1e-4 /'):
+            events, rows, pieces = [], [], []
+            for sign in ('', '-'):
+                self.run_text(text.replace('Sx', sign).replace('--', ''), '--no-plot')
+                events.append((self.folder / 'case_out/case_events.csv').read_text())
+                rows.append([list(map(float, row.values())) for row in self.rows('case_out/case.csv')])
+                if 'duration' in text:
+                    pieces.append([{**row, 'drive_velocity': abs(float(row['drive_velocity']))}
+                                   for row in self.rows('case_out/case_pieces.csv')])
+            self.assertEqual(events[0], events[1], text)
+            self.assertEqual(rows[0], [row[:1] + [-x for x in row[1:7]] + row[7:] for row in rows[1]], text)
+            self.assertEqual(pieces[:1], pieces[1:], text)
 
     def test_a_reciprocating_drive_has_events_in_both_senses_and_none_where_it_turns(self):
         text = BLOCK + '&drive velocity=VELOCITIES, duration=4*20.0 / &time t_end=80 rtol=1e-6 / &output every=0.02 /'

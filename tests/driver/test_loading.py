@@ -62,8 +62,9 @@ class Programme(Columns):
         expected = self.run_columns(self.with_file(self.PLAIN))
         for code in ('utf-16-le', 'utf-16-be'):
             text = self.with_file(self.PLAIN)
-            (self.folder / 'load.csv').write_bytes(('\ufeff# \u00b5m \U0001f600\n' + self.PLAIN).encode(code))
-            self.assertEqual(self.run_columns(text), expected)
+            for start in ('\ufeff# \u00b5m \U0001f600\n', ''):   # with a mark and without
+                (self.folder / 'load.csv').write_bytes((start + self.PLAIN).encode(code))
+                self.assertEqual(self.run_columns(text), expected)
 
     def test_columns_and_factors_are_chosen_by_keys(self):
         expected = self.run_columns(self.with_file(self.PLAIN))
@@ -605,6 +606,11 @@ class BadProgramme(Columns):
                 ('time,velocity\n0,1\n1,1e-999\n', "line 3: velocity = '1e-999': is smaller than any number"),
                 ('time,velocity\n0,1\n1,1\x00\n', 'line 3: holds a character 0'),
                 ('time,velocity\n0,1\n1,"1\n2,1\n', 'line 3: a quote is not closed'),
+                ('"time\n[s]","velocity\n[m/s]"\n0,1\n1,1\n', 'line 1: a quote is not closed in this line'),
+                ('time,velocity,"normal\n[Pa]"\n0,1,1\n1,1,1\n', 'line 1: a quote is not closed in this line'),
+                ('time s,velocity mm/s\n0,1\n1,1\n', "displacement': there are 'time', 's,velocity', 'mm/s'"),
+                ('time,displacement\n0,1\n1,-1e101\n', 'line 3: displacement: the number, times its factor, must not'),
+                ('time,velocity\n0,1\n1e-20,1e99\n', 'line 3: changes faster than by 1e100 in unit time'),
                 ('time;velocity\n0;0,5\n1;0.5\n', "line 3: velocity = '0.5': has a decimal point, and line 2 has"),
                 ('time;velocity\n0;0\n1;1.000,5\n', "line 3: velocity = '1.000,5': has a decimal point and a comma"),
                 ('time,velocity\n0,1\n1,1 mm/s\n', "line 3: velocity = '1 mm/s': must be a finite number"),
@@ -622,6 +628,8 @@ class BadProgramme(Columns):
         content = 'Zeit;Weg\n0;0\n1;1\n'
         self.refused(self.with_file(content, (('drive', 'time_column'), "'Zeit'"), (('drive', 'displacement_column'), "'Pfad'")),
                      "line 1: column 'Pfad' is missing: there are 'Zeit', 'Weg'")
+        self.refused(self.with_file('time,displacement\n0,0\n1,20\n', (('drive', 'displacement_factor'), '-1e99')),
+                     'line 3: displacement: the number, times its factor, must not exceed 1e100')
         self.refused(self.with_file(content, (('drive', 'time_column'), "'Zeit'"), (('drive', 'displacement_column'), "'weg'"),
                                     (('drive', 'normal_factor'), '2')), "line 1: no column 'normal' for its factor")
         self.refused(self.with_file(content, (('drive', 'velocity_column'), "'Weg'"), (('drive', 'displacement_column'), "'Weg'"),

@@ -386,6 +386,8 @@ class BadInput(Program):
                 ('velocity = 1', 'velocity = 1,, 2', ':18: &drive velocity: a value is missing before a comma'),
                 ('velocity = 1\n/', 'velocity = 1\n/ done', ":19: text after the '/' that ends &drive: 'done'"),
                 ('mass = ', 'area(2) = 1 mass = ', ':12: &slider area'),
+                ("law = '", "law(1:3) = '", ":2: &friction law = 'subloading': takes one value, and no subscript"),
+                ('&drive\n', "&output time_unit(2:3) = 'ms' /\n&drive\n", ":17: &output time_unit = 'ms': takes one value, and no sub"),
                 ('&drive\n', '&\n' * 200 + '&drive\n', ":17: text outside any group: '&'")):
             result = self.run_text(namelist().replace(old, new), verb='check')
             self.assertEqual((result.returncode, len(result.stderr.splitlines())), (2, 1), result.stderr)
