@@ -7,21 +7,14 @@
 submodule(friction_mod) friction_batch
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_intptr_t, c_loc
     use friction_contact, only : point_open
-    use friction_lane_block, only : c_mu_0, c_r_0, lane_none, lane_subloading, lanes, &
-        n_constants
-    use friction_lane_constants, only : copy_constants, lane_plan, plan_lanes, spread_constants
+    use friction_lane_block, only : block_task, c_mu_0, c_own, c_r_0, constants_source, &
+        lane_none, lane_subloading, lanes, n_constants
+    use friction_lane_constants, only : lane_plan, plan_lanes, spread_constants
     use friction_threads, only : worth_threads
     implicit none
 
     integer, parameter :: line = 8            !! numbers of a cache line
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
-
-    !> What a block's call is about: as in module friction_batch_kernel.
-    type, bind(C) :: block_task
-        integer(c_int64_t) :: stride
-        integer(c_int) :: kind, ndir, varied, options
-        real(c_double) :: dt
-    end type block_task
 
     !> What a call is about.
     type, extends(array_sizes) :: batch
@@ -30,6 +23,7 @@ submodule(friction_mod) friction_batch
         type(lane_plan) :: plan        !! the lanes of the law and its options
         logical :: plain               !! the subloading law without options, in space, the same
                                        !! constants for all: it has a kernel of its own
+        real(wp) :: plain_constants(8)              !! for that kernel
         real(wp) :: constants(lanes, n_constants)   !! for all points, if they share them
     end type batch
 
@@ -46,6 +40,19 @@ submodule(friction_mod) friction_batch
             real(c_double), intent(inout) :: tangent(task%stride, task%ndir, *)
             integer(c_int), intent(out) :: left(lanes), n_left
         end subroutine batch_kernel
+
+        !> See module friction_constants_kernel.
+        pure subroutine constants_kernel(source, stride, count, props, constants, left) &
+            bind(C, name='stickslip_constants_kernel')
+            import :: c_double, c_int, c_int64_t, constants_source, lanes, n_constants
+            implicit none
+            type(constants_source), intent(in) :: source
+            integer(c_int64_t), value, intent(in) :: stride
+            integer(c_int), value, intent(in) :: count
+            real(c_double), intent(in) :: props(stride, *)
+            real(c_double), intent(out) :: constants(lanes, n_constants)
+            integer(c_int), intent(out) :: left(lanes)
+        end subroutine constants_kernel
 
         !> See module friction_subloading_kernel.
         subroutine subloading_kernel(stride, du, dtime, constants, statev, traction, tangent, &
@@ -185,6 +192,9 @@ contains
         if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%constants)
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
             .and. .not. this%plan%options
+        associate (value => this%plan%source%value)
+            this%plain_constants = [value(:c_mu_0 - 1), value(c_own:c_own + 4), value(c_mu_0)]
+        end associate
     end subroutine prepare
 
     !> Points `first` to `last`, a block at most.
@@ -206,8 +216,9 @@ contains
                 call update_point_of(this, i, du, props, statev, traction, tangent, status(i))
             end do
         else if (this%rows > 1) then
-            call copy_constants(this%plan, this%rows, props, first, int(last - first) + 1, &
-                constants, left)
+            call constants_kernel(this%plan%source, this%rows, int(last - first, c_int) + 1_c_int, &
+                props(first, 1), constants, left)
+            constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
             call update_lanes(this, first, last, constants, du, props, left, statev, traction, &
                 tangent, status)
         else
@@ -255,8 +266,8 @@ contains
         integer(c_int), intent(out) :: left(lanes), n_left
 
         if (this%plain) then
-            call subloading_kernel(stride, du, this%dtime, [this%plan%value(:c_mu_0 - 2), &
-                this%plan%value(c_mu_0)], statev, traction, tangent, left, n_left)
+            call subloading_kernel(stride, du, this%dtime, this%plain_constants, statev, traction, &
+                tangent, left, n_left)
         else
             call batch_kernel(task_of(this, stride), constants, du, statev, traction, tangent, &
                 left, n_left)
@@ -269,8 +280,8 @@ contains
         type(block_task) :: task
 
         task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
-            merge(1_c_int, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, this%plan%options), &
-            this%dtime)
+            merge(this%plan%n_own, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, &
+            this%plan%options), this%dtime)
     end function task_of
 
     !> The same through a copy, filled up to a block, without the points that the kernel leaves.
@@ -298,12 +309,12 @@ contains
         do
             do j = 1, lanes
                 if (left(j) == 0 .and. j <= count) cycle   ! else an open point harms nobody
-                constants_(j, :) = this%plan%value
+                constants_(j, :) = this%plan%source%value
                 du_(j, :) = 0.0_wp
                 statev_(j, :) = 0.0_wp
                 statev_(j, statev_status) = point_open
-                statev_(j, statev_mu) = this%plan%value(c_mu_0)
-                statev_(j, statev_r) = this%plan%value(c_r_0)
+                statev_(j, statev_mu) = this%plan%source%value(c_mu_0)
+                statev_(j, statev_r) = this%plan%source%value(c_r_0)
             end do
             call call_kernel(this, int(lanes, int64), constants_, du_, statev_, traction_, &
                 tangent_, more, n_left)

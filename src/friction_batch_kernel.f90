@@ -9,10 +9,10 @@
 module friction_batch_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_coulomb_lanes, only : rest_coulomb, slide_coulomb
-    use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_r_0, c_squeeze, &
-        lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_reciprocal, &
-        lane_slip_law, lane_static_kinetic, lane_subloading, lanes, n_constants, no_cap, &
-        rest_block, slide_block, widest
+    use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &
+        c_mu_0, c_own, c_r_0, c_squeeze, lane_ageing, lane_cotangent, lane_coulomb, &
+        lane_exact_rate, lane_reciprocal, lane_slip_law, lane_static_kinetic, lane_subloading, &
+        lanes, n_constants, no_cap, rest_block, slide_block, verge, widest
     use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
     use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
         state_slip_weakening
@@ -31,18 +31,6 @@ module friction_batch_kernel
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
     real(wp), parameter :: smallest = 1.0e-100_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
-    real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
-
-    !> What a call is about.
-    type, bind(C) :: block_task
-        integer(c_int64_t) :: stride   !! distance of components, 128 or more
-        integer(c_int) :: kind         !! law
-        integer(c_int) :: ndir         !! components of du: 2 or 3
-        integer(c_int) :: varied       !! 1 where points differ in their constants, else 0
-        integer(c_int) :: options      !! 1 where a point has a shear cap or two coefficients, else
-                                       !! 0
-        real(c_double) :: dt           !! [T]
-    end type block_task
 
     !> A block with all of its slip prevented.
     type :: trial_block
@@ -67,7 +55,7 @@ module friction_batch_kernel
 
 contains
 
-    !> Updates points 1 to 128 of component-major arrays.
+    !> Updates points 1 to `lanes` of component-major arrays.
     subroutine update_block(task, constants, du, statev, traction, tangent, left, n_left) &
         bind(C, name='stickslip_batch_kernel')
         type(block_task), intent(in) :: task
@@ -100,6 +88,9 @@ contains
         real(wp) :: valid(lanes), strength
         integer :: i
 
+        n_slides = 0
+        call check(task, du, statev, left, n_left)
+        if (n_left > 0) return
         call load(task, constants, du, statev, trial, valid)
         select case (task%kind)
         case (lane_subloading, lane_cotangent, lane_reciprocal)
@@ -129,6 +120,31 @@ contains
         end do
     end subroutine find_trial
 
+    !> Leaves the points whose numbers are not finite, too large, or out of the range of every law.
+    !> Numbers that are not finite meet nothing here but sums, which raise no exception.
+    subroutine check(task, du, statev, left, n_left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
+        integer(c_int), intent(out) :: left(lanes), n_left
+        integer(c_int64_t) :: wrong(lanes), any_wrong
+        real(wp) :: moved, others
+        integer :: i
+
+        any_wrong = 0
+        do i = 1, lanes
+            moved = abs(du(i, 1)) + abs(du(i, 2)) + abs(du(i, task%ndir))
+            others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(statev(i, 5)) &
+                + abs(statev(i, 6)) + abs(statev(i, 7)) + abs(statev(i, 8))
+            wrong(i) = not(below_largest(others + abs(statev(i, 1)) + moved, largest))
+            any_wrong = ior(any_wrong, wrong(i))
+        end do
+        n_left = 0
+        left = 0
+        if (any_wrong == 0) return
+        left = int(iand(wrong, 1_c_int64_t), c_int)
+        n_left = sum(left)
+    end subroutine check
+
     !> The points at the start of the increment, and the elastic traction at its end.
     subroutine load(task, constants, du, statev, trial, valid)
         type(block_task), intent(in) :: task
@@ -136,36 +152,28 @@ contains
         real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
         type(trial_block), intent(inout) :: trial
         real(wp), intent(out) :: valid(lanes)   !! below 0 tells a number out of its range
-        integer(c_int64_t) :: fine, in_space
-        real(wp) :: du_3, others, phase, u_n, q1, q2, p, traction, mu, r, margin
+        real(wp) :: in_space, others, phase, q1, q2, p, traction, mu, r, margin
         integer :: i
 
-        in_space = merge(-1_c_int64_t, 0_c_int64_t, task%ndir == 3)
+        in_space = merge(1.0_wp, 0.0_wp, task%ndir == 3)
         do i = 1, lanes
-            du_3 = zero_unless(in_space, du(i, task%ndir))
-            others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(statev(i, 5)) &
-                + abs(statev(i, 6)) + abs(statev(i, 7)) + abs(statev(i, 8))
-            fine = below_largest(others + abs(statev(i, 1)) + abs(du(i, 1)) + abs(du(i, 2)) &
-                + abs(du_3))
-            others = zero_unless(fine, others)
-            phase = zero_unless(fine, statev(i, 1))
-            u_n = zero_unless(fine, statev(i, 2))
-            q1 = zero_unless(fine, statev(i, 3) + du(i, 2))
-            q2 = zero_unless(iand(fine, in_space), statev(i, 4) + du_3)   ! checked in a plane, too
-            mu = zero_unless(fine, statev(i, 5))
-            r = zero_unless(fine, statev(i, 6))
-            margin = min(zero_unless(fine, statev(i, 7)), zero_unless(fine, statev(i, 8)), &
+            phase = statev(i, 1)
+            q1 = statev(i, 3) + du(i, 2)
+            q2 = (statev(i, 4) + du(i, task%ndir)) * in_space
+            mu = statev(i, 5)
+            r = statev(i, 6)
+            margin = min(statev(i, 7), statev(i, 8), &
                 -abs(phase * (phase - 1.0_wp) * (phase - 2.0_wp) * (phase - 3.0_wp)))
             if (phase <= 0.0_wp) then
+                others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(mu) &
+                    + abs(r) + abs(statev(i, 7)) + abs(statev(i, 8))
                 margin = min(margin, -others)
                 mu = constants(i, c_mu_0)
                 r = constants(i, c_r_0)
             end if
-            if (fine == 0) margin = -1.0_wp
-
-            p = max(0.0_wp, -constants(i, c_alpha_n) * zero_unless(fine, u_n + du(i, 1)))
+            p = max(0.0_wp, -constants(i, c_alpha_n) * (statev(i, 2) + du(i, 1)))
             if (p > 0.0_wp) then
-                margin = min(margin, -u_n, p - smallest)
+                margin = min(margin, -statev(i, 2), p - smallest)
             else
                 q1 = 0.0_wp
                 q2 = 0.0_wp
@@ -191,14 +199,12 @@ contains
         real(wp), intent(in) :: statev(task%stride, 8)
         type(trial_block), intent(inout) :: trial
         real(wp), intent(inout) :: valid(lanes)
-        integer(c_int64_t) :: fine
         real(wp) :: u1, u2, q2, length, along, reach
         integer :: i
 
         do i = 1, lanes
-            fine = below_largest(abs(statev(i, 3)) + abs(statev(i, 4)))
-            u1 = zero_unless(fine, statev(i, 3))
-            u2 = constants(i, c_squeeze) * zero_unless(fine, statev(i, 4))
+            u1 = statev(i, 3)
+            u2 = constants(i, c_squeeze) * statev(i, 4)
             if (task%ndir == 2) u2 = 0.0_wp
             q2 = constants(i, c_squeeze) * trial%q2(i)
             length = sqrt(u1**2 + u2**2)
@@ -217,23 +223,6 @@ contains
         end do
     end subroutine leave_reloading
 
-    !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
-    !> silent where a comparison with NaN raises an exception.
-    pure function below_largest(total) result(mask)
-        real(wp), intent(in) :: total
-        integer(c_int64_t) :: mask
-
-        mask = shifta(transfer(total, mask) - transfer(largest, mask), 63)
-    end function below_largest
-
-    pure function zero_unless(mask, x) result(kept)
-        integer(c_int64_t), intent(in) :: mask   !! all bits or none
-        real(wp), intent(in) :: x
-        real(wp) :: kept
-
-        kept = transfer(iand(transfer(x, mask), mask), x)
-    end function zero_unless
-
     !> Slip of the points that slide.
     subroutine find_slip(task, constants, trial, n_slides, slid, left, n_left)
         type(block_task), intent(in) :: task
@@ -246,26 +235,14 @@ contains
         integer, parameter :: many = (3 * lanes) / 4   !! packing takes longer than to fill gaps
 
         n_left = 0
-        if (n_slides <= many .or. task%varied > 0) call clear(slid)
         if (n_slides == 0) return
-        if (n_slides == lanes .or. (n_slides > many .and. task%varied == 0)) then
+        if (n_slides == lanes .or. (n_slides > many .and. task%n_own == 0)) then
             call slide_all(task, constants, trial, slid, left)
         else
             call slide_packed(task, constants, trial, n_slides, slid, left)
         end if
         n_left = sum(left)
     end subroutine find_slip
-
-    pure subroutine clear(slid)
-        type(slide_block), intent(inout) :: slid
-
-        slid%slip = 0.0_wp
-        slid%mu_end = 0.0_wp
-        slid%r_end = 0.0_wp
-        slid%resistance = 0.0_wp
-        slid%d_slip = 0.0_wp
-        slid%d_pressure = 0.0_wp
-    end subroutine clear
 
     !> All points of the block; those that do not slide take the numbers of one that does.
     subroutine slide_all(task, constants, trial, slid, left)
@@ -348,18 +325,28 @@ contains
                     + trial%q2(place(i))**2)
             end do
         end if
-        if (task%varied > 0) then
-            do k = 1, n_constants
-                do i = 1, packed%n
-                    packed_constants(i, k) = constants(place(i), k)
-                end do
+        if (task%n_own > 0) then
+            do k = c_own, c_own + task%n_own - 1
+                call pack_column(packed%n, place, constants(:, k), packed_constants(:, k))
             end do
+            call pack_column(packed%n, place, constants(:, c_cap), packed_constants(:, c_cap))
             call slide(task, packed_constants, own_strength, packed)
         else
             call slide(task, constants, own_strength, packed)
         end if
         call unpack(n_slides, place, packed, slid, left)
     end subroutine slide_packed
+
+    pure subroutine pack_column(n, place, from, to)
+        integer, intent(in) :: n, place(lanes)
+        real(wp), intent(in) :: from(lanes)
+        real(wp), intent(inout) :: to(lanes)
+        integer :: i
+
+        do i = 1, n
+            to(i) = from(place(i))
+        end do
+    end subroutine pack_column
 
     !> Results of packed points, back in their places.
     pure subroutine unpack(n, place, packed, slid, left)
@@ -547,8 +534,8 @@ contains
 
         do i = 1, lanes
             force = max(trial%rest%traction(i), least)
-            total = max(constants(i, c_alpha_t) + slid%d_slip(i), epsilon(1.0_wp) &
-                * constants(i, c_alpha_t))
+            total = constants(i, c_alpha_t)
+            if (trial%moves(i) > 0) total = max(total + slid%d_slip(i), epsilon(1.0_wp) * total)
             shared = 1.0_wp / (force * total)   ! one division for two
             moves = merge(constants(i, c_alpha_t), 0.0_wp, trial%moves(i) > 0)
             answer%inverse(i) = total * shared
@@ -566,7 +553,7 @@ contains
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
         type(answer_block), intent(inout) :: answer
-        real(wp) :: length, force, stiffness, moves
+        real(wp) :: length, force, stiffness, total, moves
         integer :: i
 
         do i = 1, lanes
@@ -579,8 +566,9 @@ contains
             answer%lever(i) = constants(i, c_alpha_t) * length / force
             answer%inverse(i) = 1.0_wp / (constants(i, c_alpha_t) * length)
             answer%squeezed(i) = moves * (constants(i, c_squeeze)**2 - 1.0_wp) * answer%lever(i)
-            answer%coupling(i) = moves * constants(i, c_alpha_t) / max(stiffness &
-                + slid%d_slip(i), epsilon(1.0_wp) * stiffness)
+            total = stiffness
+            if (trial%moves(i) > 0) total = max(total + slid%d_slip(i), epsilon(1.0_wp) * total)
+            answer%coupling(i) = moves * constants(i, c_alpha_t) / total
         end do
     end subroutine turn_direction
 

@@ -2,19 +2,18 @@
 !> (module friction_batch_kernel).
 module friction_lane_constants
     use, intrinsic :: iso_c_binding, only : c_int
-    use, intrinsic :: iso_fortran_env, only : int64
     use friction_anisotropy, only : orthotropy
     use friction_coulomb_law, only : coulomb_law
     use friction_kinds, only : wp
     use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_own, c_r_0, c_squeeze, &
-        lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_none, lane_reciprocal, &
-        lane_slip_law, lane_slip_weakening, lane_static_kinetic, lane_subloading, lanes, &
-        n_constants, n_own, no_cap
+        constants_source, lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_none, &
+        lane_reciprocal, lane_slip_law, lane_slip_weakening, lane_static_kinetic, &
+        lane_subloading, lanes, n_constants, n_own, no_cap
     use friction_law, only : law_state, named_law
     use friction_law_choice, only : choose_law, choose_own_law, first_own_prop, law_storage, &
         prop_alpha_n, prop_alpha_t, prop_law
     use friction_law, only : law
-    use friction_law_constants, only : constant_table, law_constant
+    use friction_law_constants, only : constant_table, positive
     use friction_rate_state_law, only : rate_state_law, slipping
     use friction_slip_weakening_law, only : slip_weakening_law
     use friction_static_kinetic_law, only : static_kinetic_law
@@ -24,20 +23,16 @@ module friction_lane_constants
     implicit none
     private
 
-    public :: copy_constants, lane_plan, plan_lanes, spread_constants
+    public :: lane_plan, plan_lanes, spread_constants
 
-    !> How a law's constants become those of lanes.
+    !> The lanes of a law and its options, and how its constants become theirs.
     type :: lane_plan
         integer(c_int) :: kind = lane_none   !! see module friction_lane_block
         logical :: options = .false.    !! a shear cap or two coefficients, at any point
         logical :: needs_time = .false. !! no increment without time
-        integer :: place(n_constants) = 0     !! in `props`; 0: none, the value below instead
-        real(wp) :: value(n_constants) = 0.0_wp   !! of the point that the plan was made for
-        integer :: n_choices = 0              !! constants that have to be what they are there
-        integer :: choice(4) = 0              !! their places
-        real(wp) :: chosen(4) = 0.0_wp        !! and values
-        integer :: n_rules = 0                !! rules of the law's own constants
-        type(law_constant) :: rule(n_own)
+        integer(c_int) :: n_own = 0     !! columns of the law's own constants
+        type(constants_source) :: source   !! its values are those of the point that the plan was
+                                           !! made for
     end type lane_plan
 
     !> Constants that are not zero are of ordinary size, or lanes do not take them.
@@ -66,18 +61,18 @@ contains
         if (plan%kind == lane_none) return
         plan%needs_time = own%needs_time()
         virgin = own%virgin()
-        plan%value(c_mu_0) = virgin%mu
-        plan%value(c_r_0) = virgin%r
-        plan%value(c_cap) = no_cap
-        if (surface%tau_max < most) plan%value(c_cap) = surface%tau_max
-        plan%value(c_squeeze) = plane%squeeze
+        plan%source%value(c_mu_0) = virgin%mu
+        plan%source%value(c_r_0) = virgin%r
+        plan%source%value(c_cap) = no_cap
+        if (surface%tau_max < most) plan%source%value(c_cap) = surface%tau_max
+        plan%source%value(c_squeeze) = plane%squeeze
         plan%options = surface%tau_max < most .or. abs(plane%squeeze - 1.0_wp) > 0.0_wp
         if (varied .and. option <= nprops) plan%options = .true.
-        if (option <= nprops) plan%place(c_cap) = option
-        if (option + 1 <= nprops) plan%place(c_squeeze) = option + 1
+        if (option <= nprops) plan%source%place(c_cap) = option
+        if (option + 1 <= nprops) plan%source%place(c_squeeze) = option + 1
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
-        if (.not. ordinary(plan%value(:c_mu_0 - 1))) plan%kind = lane_none
-        if (.not. ordinary(plan%value(c_mu_0:c_r_0))) plan%kind = lane_none
+        if (.not. ordinary(plan%source%value(:c_r_0))) plan%kind = lane_none
+        if (.not. ordinary(plan%source%value(c_own:))) plan%kind = lane_none
     end subroutine plan_lanes
 
     !> The part of the law itself.
@@ -87,28 +82,43 @@ contains
         real(wp), intent(in) :: props(nprops)
         type(lane_plan), intent(inout) :: plan
         type(constant_table) :: table
-        integer :: k, place
+        integer :: k, place, column_of(size(table%of))
 
         plan%kind = kind_of(own)
         if (plan%kind == lane_none) return
-        plan%place(c_alpha_n) = prop_alpha_n
-        plan%place(c_alpha_t) = prop_alpha_t
+        plan%source%place(c_alpha_n) = prop_alpha_n
+        plan%source%place(c_alpha_t) = prop_alpha_t
         call must_stay(prop_law, props(prop_law), plan)
         table = own%constants()
+        column_of = 0
         do k = 1, table%n
             place = first_own_prop + k - 1
             if (place > nprops) exit
             if (table%of(k)%whole) then
                 call must_stay(place, props(place), plan)
-            else if (.not. table%of(k)%optional) then
-                plan%n_rules = k
-                plan%rule(k) = table%of(k)
-                plan%place(c_own + k - 1) = place
+                cycle
             end if
+            if (plan%n_own == n_own) then
+                plan%kind = lane_none
+                return
+            end if
+            column_of(k) = c_own + plan%n_own
+            plan%n_own = plan%n_own + 1_c_int
+            plan%source%place(column_of(k)) = place
+            plan%source%lower(column_of(k)) = table%of(k)%lower
+            plan%source%upper(column_of(k)) = table%of(k)%upper
         end do
-        do k = 1, c_own + n_own - 1
-            if (plan%place(k) > 0) plan%value(k) = props(plan%place(k))
+        do k = 1, table%n
+            if (column_of(k) == 0) cycle
+            if (table%of(k)%not_below > 0) plan%source%not_below(column_of(k)) = &
+                column_of(table%of(k)%not_below)
+            if (table%of(k)%not_above > 0) plan%source%not_above(column_of(k)) = &
+                column_of(table%of(k)%not_above)
         end do
+        do k = 1, n_constants
+            if (plan%source%place(k) > 0) plan%source%value(k) = props(plan%source%place(k))
+        end do
+        plan%source%lower([c_alpha_n, c_alpha_t]) = positive
     end subroutine plan_own
 
     pure subroutine must_stay(place, value, plan)
@@ -116,9 +126,15 @@ contains
         real(wp), intent(in) :: value
         type(lane_plan), intent(inout) :: plan
 
-        plan%n_choices = plan%n_choices + 1
-        plan%choice(plan%n_choices) = place
-        plan%chosen(plan%n_choices) = value
+        associate (n => plan%source%n_choices)
+            if (n == size(plan%source%choice)) then
+                plan%kind = lane_none
+                return
+            end if
+            n = n + 1_c_int
+            plan%source%choice(n) = int(place, c_int)
+            plan%source%chosen(n) = value
+        end associate
     end subroutine must_stay
 
     !> Laws that have lanes.
@@ -154,100 +170,8 @@ contains
         integer :: k
 
         do k = 1, n_constants
-            constants(:, k) = plan%value(k)
+            constants(:, k) = plan%source%value(k)
         end do
     end subroutine spread_constants
-
-    !> Each lane's own constants, and the lanes that are left: by their constants, which the routine
-    !> for one point then judges. Virgin points are left, too.
-    pure subroutine copy_constants(plan, points, props, first, count, constants, left)
-        type(lane_plan), intent(in) :: plan
-        integer(int64), intent(in) :: points
-        real(wp), intent(in) :: props(points, *)
-        integer(int64), intent(in) :: first    !! point of the first lane
-        integer, intent(in) :: count           !! lanes in use
-        real(wp), intent(out) :: constants(lanes, n_constants)
-        integer(c_int), intent(out) :: left(lanes)
-        integer :: j, k
-
-        left = 0
-        call spread_constants(plan, constants)
-        constants(:, c_mu_0) = -1.0_wp   ! a coefficient that no law admits
-        do k = 1, plan%n_choices
-            do j = 1, count
-                if (bits(props(first + j - 1, plan%choice(k))) /= bits(plan%chosen(k))) left(j) = 1
-            end do
-        end do
-        do k = 1, n_constants
-            if (plan%place(k) == 0) cycle
-            call copy_ordinary(count, props(first, plan%place(k)), constants(:, k), left)
-        end do
-        call follow_rules(plan, count, constants, left)
-        if (plan%place(c_cap) > 0) then
-            do j = 1, count
-                if (constants(j, c_cap) <= 0.0_wp) constants(j, c_cap) = no_cap
-            end do
-        end if
-        if (plan%place(c_squeeze) > 0) then
-            do j = 1, count
-                if (constants(j, c_squeeze) > 0.0_wp) then
-                    constants(j, c_squeeze) = 1.0_wp / constants(j, c_squeeze)
-                else
-                    constants(j, c_squeeze) = 1.0_wp
-                end if
-            end do
-        end if
-    end subroutine copy_constants
-
-    !> One constant of all lanes; where it is not of ordinary size the lane keeps what it has.
-    pure subroutine copy_ordinary(count, from, to, left)
-        integer, intent(in) :: count
-        real(wp), intent(in) :: from(count)
-        real(wp), intent(inout) :: to(lanes)
-        integer(c_int), intent(inout) :: left(lanes)
-        integer(int64) :: number
-        integer :: j
-
-        do j = 1, count
-            number = bits(from(j))
-            if (number == 0 .or. (number > bits(least) .and. number < bits(most))) then
-                to(j) = from(j)
-            else
-                left(j) = 1
-            end if
-        end do
-    end subroutine copy_ordinary
-
-    !> A number as an integer, which orders those above zero as they are: silent where a comparison
-    !> with NaN raises an exception.
-    elemental function bits(x)
-        real(wp), intent(in) :: x
-        integer(int64) :: bits
-
-        bits = transfer(x, bits)
-    end function bits
-
-    !> Lanes whose constants break a rule of the law are left.
-    pure subroutine follow_rules(plan, count, constants, left)
-        type(lane_plan), intent(in) :: plan
-        integer, intent(in) :: count
-        real(wp), intent(in) :: constants(lanes, n_constants)
-        integer(c_int), intent(inout) :: left(lanes)
-        integer :: j, k, other
-
-        do j = 1, count
-            if (min(constants(j, c_alpha_n), constants(j, c_alpha_t)) <= 0.0_wp) left(j) = 1
-        end do
-        do k = 1, plan%n_rules
-            do j = 1, count
-                if (constants(j, c_own + k - 1) < plan%rule(k)%lower) left(j) = 1
-            end do
-            other = plan%rule(k)%not_below
-            if (other == 0) cycle
-            do j = 1, count
-                if (constants(j, c_own + k - 1) < constants(j, c_own + other - 1)) left(j) = 1
-            end do
-        end do
-    end subroutine follow_rules
 
 end module friction_lane_constants

@@ -6,6 +6,7 @@
 !> on its neighbours nor on the number of threads.
 submodule(friction_mod) friction_slip_rate
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_lane_block, only : lanes
     use friction_law_choice, only : first_own_prop, prop_law, whole_number
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
@@ -13,7 +14,6 @@ submodule(friction_mod) friction_slip_rate
     use friction_threads, only : worth_threads
     implicit none
 
-    integer, parameter :: lanes = 128         !! points of the kernel's block
     integer, parameter :: own_constants = n_needed   !! of the law: a, b, d_c, v0, f0
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
     integer, parameter :: least_props = first_own_prop + own_constants - 1

@@ -16,6 +16,7 @@
 !> (src/CMakeLists.txt): it uses nothing else, so that the copies share nothing.
 module friction_slip_rate_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_lane_block, only : below_largest, lanes, zero_unless
     use friction_rate_state_core, only : ageing_rate, decayed_part, slip_law_rate, slip_rate, &
         state_exponent
     implicit none
@@ -24,7 +25,6 @@ module friction_slip_rate_kernel
     public :: slip_rates_of_block
 
     integer, parameter :: wp = c_double
-    integer, parameter :: lanes = 128      !! points of a block: its scratch data stay in cache
     integer, parameter :: inputs = 8       !! numbers of a point
     integer, parameter :: in_tau = 1, in_pressure = 2, in_theta = 3, in_a = 4, in_b = 5, &
         in_d_c = 6, in_v0 = 7, in_f0 = 8
@@ -44,12 +44,12 @@ module friction_slip_rate_kernel
 
 contains
 
-    !> Slip rates, and the rates of theta, of 128 points.
+    !> Slip rates, and the rates of theta, of a block of points.
     subroutine slip_rates_of_block(evolution, damping, stride, tau, pressure, theta, constants, &
         rates, left) bind(C, name='stickslip_slip_rate_kernel')
         integer(c_int), value, intent(in) :: evolution    !! 0: ageing law, 1: slip law
         real(wp), value, intent(in) :: damping            !! 0, or 1e-30 to 1e30 [F T/L^3]
-        integer(c_int64_t), value, intent(in) :: stride   !! distance of constants, 128 or more
+        integer(c_int64_t), value, intent(in) :: stride   !! distance of constants, `lanes` or more
         real(wp), intent(in) :: tau(lanes), pressure(lanes)   !! [F/L^2]
         real(wp), intent(in) :: theta(lanes)                  !! [T]
         real(wp), intent(in) :: constants(stride, *)      !! a, b, d_c, v0, f0
@@ -77,7 +77,7 @@ contains
         do i = 1, lanes
             fine = below_largest(abs(tau(i)) + abs(pressure(i)) + abs(theta(i)) &
                 + abs(constants(i, 1)) + abs(constants(i, 2)) + abs(constants(i, 3)) &
-                + abs(constants(i, 4)) + abs(constants(i, 5)))
+                + abs(constants(i, 4)) + abs(constants(i, 5)), largest)
             kept(i, in_tau) = zero_unless(fine, tau(i))
             kept(i, in_pressure) = zero_unless(fine, pressure(i))
             kept(i, in_theta) = zero_unless(fine, theta(i))
@@ -97,23 +97,6 @@ contains
             end do
         end do
     end subroutine keep_ordinary
-
-    !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
-    !> silent where a comparison with NaN raises an exception.
-    pure function below_largest(total) result(mask)
-        real(wp), intent(in) :: total
-        integer(c_int64_t) :: mask
-
-        mask = shifta(transfer(total, mask) - transfer(largest, mask), 63)
-    end function below_largest
-
-    pure function zero_unless(mask, x) result(kept)
-        integer(c_int64_t), intent(in) :: mask   !! all bits or none
-        real(wp), intent(in) :: x
-        real(wp) :: kept
-
-        kept = transfer(iand(transfer(x, mask), mask), x)
-    end function zero_unless
 
     !> The numbers of the search, and where it starts.
     subroutine prepare(damping, kept, block, left)

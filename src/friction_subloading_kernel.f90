@@ -11,24 +11,21 @@
 !> its result does not depend on its neighbours. No floating-point exception but inexact and
 !> underflow.
 !>
-!> Compiled once for each vector instruction set, under other names (src/vector/): it uses nothing,
-!> so that the copies share nothing.
+!> Compiled once for each vector instruction set, under other names, with a copy of what it uses
+!> (src/CMakeLists.txt).
 module friction_subloading_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_lane_block, only : below_largest, lanes, least_ratio, verge, widest, zero_unless
     implicit none
     private
 
     public :: update_block
 
     integer, parameter :: wp = c_double
-    integer, parameter :: lanes = 128       !! points of a block: its scratch data stay in cache
-    integer, parameter :: widest = 8        !! lanes of the widest vectors
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
     real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: third = 1.0_wp / 3.0_wp
-    real(wp), parameter :: least_ratio = 1.0e-100_wp   !! of module friction_subloading_law
-    real(wp), parameter :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
     !> Constants of the law and of the increment.
     type :: increment
@@ -57,10 +54,10 @@ module friction_subloading_kernel
 
 contains
 
-    !> Updates points 1 to 128 of component-major arrays with `stride` points.
+    !> Updates points 1 to `lanes` of component-major arrays with `stride` points.
     subroutine update_block(stride, du, dtime, constants, statev, traction, tangent, left, n_left) &
         bind(C, name='stickslip_subloading_kernel')
-        integer(c_int64_t), value, intent(in) :: stride   !! distance of components, 128 or more
+        integer(c_int64_t), value, intent(in) :: stride   !! distance of components, `lanes` or more
         real(wp), intent(in) :: du(stride, *)             !! 3 components [L]
         real(wp), value, intent(in) :: dtime              !! [T]
         real(wp), intent(in) :: constants(8)   !! alpha_n, alpha_t, mu_s, mu_k, kappa, xi, m, mu_0,
@@ -103,7 +100,7 @@ contains
             others = abs(statev(i, 2)) + abs(statev(i, 3)) + abs(statev(i, 4)) + abs(statev(i, 5)) &
                 + abs(statev(i, 6)) + abs(statev(i, 7)) + abs(statev(i, 8))
             fine = below_largest(others + abs(statev(i, 1)) + abs(du(i, 1)) + abs(du(i, 2)) &
-                + abs(du(i, 3)))
+                + abs(du(i, 3)), largest)
             others = zero_unless(fine, others)
             phase = zero_unless(fine, statev(i, 1))
             u_n = zero_unless(fine, statev(i, 2))
@@ -139,23 +136,6 @@ contains
             n_left = n_left + left(i)
         end do
     end subroutine find_trial
-
-    !> All bits set if a sum of magnitudes is finite and not too large, else none. Read as integers:
-    !> silent where a comparison with NaN raises an exception.
-    pure function below_largest(total) result(mask)
-        real(wp), intent(in) :: total
-        integer(c_int64_t) :: mask
-
-        mask = shifta(transfer(total, mask) - transfer(largest, mask), 63)
-    end function below_largest
-
-    pure function zero_unless(mask, x) result(kept)
-        integer(c_int64_t), intent(in) :: mask   !! all bits or none
-        real(wp), intent(in) :: x
-        real(wp) :: kept
-
-        kept = transfer(iand(transfer(x, mask), mask), x)
-    end function zero_unless
 
     !> Solves for slip and R of the points that slide, packed together.
     subroutine find_slip(inc, trial, slid, left, n_left)

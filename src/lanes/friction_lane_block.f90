@@ -6,30 +6,59 @@
 !> not
 !> meant for gets numbers that harm nobody.
 module friction_lane_block
+    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use, intrinsic :: iso_fortran_env, only : wp => real64
     implicit none
     private
 
-    integer, parameter, public :: lanes = 128   !! points of a block: its scratch data stay in cache
-    integer, parameter, public :: widest = 8    !! lanes of the widest vectors
+    public :: below_largest, zero_unless
+
+    integer, parameter, public :: lanes = 64   !! points of a block: its scratch data stay in the
+                                               !! first-level cache
+    integer, parameter, public :: widest = 8   !! lanes of the widest vectors
 
     !> Columns of the constants of a block's points.
     integer, parameter, public :: c_alpha_n = 1   !! [F/L^3]
     integer, parameter, public :: c_alpha_t = 2   !! [F/L^3]
-    integer, parameter, public :: c_own = 3       !! first of the law's own, as in `props`
-    integer, parameter, public :: n_own = 6
-    integer, parameter, public :: c_mu_0 = 9      !! friction coefficient of a virgin point [-]
-    integer, parameter, public :: c_r_0 = 10      !! its internal variable
-    integer, parameter, public :: c_cap = 11      !! shear cap; without one `no_cap` [F/L^2]
-    integer, parameter, public :: c_squeeze = 12  !! mu_1/mu_2 of orthotropic friction [-]
-    integer, parameter, public :: n_constants = 12
+    integer, parameter, public :: c_mu_0 = 3      !! friction coefficient of a virgin point [-]
+    integer, parameter, public :: c_r_0 = 4       !! its internal variable
+    integer, parameter, public :: c_cap = 5       !! shear cap; without one `no_cap` [F/L^2]
+    integer, parameter, public :: c_squeeze = 6   !! mu_1/mu_2 of orthotropic friction [-]
+    integer, parameter, public :: c_own = 7       !! first of the law's own, in the order of `props`
+    integer, parameter, public :: n_own = 10      !! at most; choices between words are not counted
+    integer, parameter, public :: n_constants = c_own + n_own - 1
     real(wp), parameter, public :: no_cap = 1.0e90_wp
     real(wp), parameter, public :: least_ratio = 1.0e-100_wp   !! of module friction_law
+    real(wp), parameter, public :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
 
     !> Laws with lanes.
     integer, parameter, public :: lane_none = 0, lane_subloading = 1, lane_exact_rate = 2, &
         lane_cotangent = 3, lane_reciprocal = 4, lane_coulomb = 5, lane_static_kinetic = 6, &
         lane_ageing = 7, lane_slip_law = 8, lane_slip_weakening = 9
+
+    !> What a call of the batch kernel is about.
+    type, bind(C), public :: block_task
+        integer(c_int64_t) :: stride   !! distance of components, `lanes` or more
+        integer(c_int) :: kind         !! law
+        integer(c_int) :: ndir         !! components of du: 2 or 3
+        integer(c_int) :: n_own        !! constants of the law's own, of each point; 0 where all
+                                       !! points share them
+        integer(c_int) :: options      !! 1 where a point has a shear cap or two coefficients, else
+                                       !! 0
+        real(c_double) :: dt           !! [T]
+    end type block_task
+
+    !> Where points find their own constants, and the rules of these.
+    type, bind(C), public :: constants_source
+        integer(c_int) :: place(n_constants) = 0   !! in `props`; 0: none, `value` instead
+        integer(c_int) :: not_below(n_constants) = 0, not_above(n_constants) = 0   !! columns, or 0
+        real(c_double) :: value(n_constants) = 0.0_c_double
+        real(c_double) :: lower(n_constants) = 0.0_c_double   !! least value
+        real(c_double) :: upper(n_constants) = huge(1.0_c_double)   !! largest value
+        integer(c_int) :: n_choices = 0          !! constants that have to be what they are here
+        integer(c_int) :: choice(6) = 0          !! their places in `props`
+        real(c_double) :: chosen(6) = 0.0_c_double   !! and values
+    end type constants_source
 
     !> An increment without slip.
     type, public :: rest_block
@@ -57,5 +86,24 @@ module friction_lane_block
         real(wp) :: left(lanes)        !! out: above 0 where the routine for one point is needed:
                                        !! several equilibria are possible, or none was found
     end type slide_block
+
+contains
+
+    !> All bits set if a sum of magnitudes is finite and below a limit, else none. Read as integers:
+    !> silent where a comparison with NaN raises an exception.
+    elemental function below_largest(total, largest) result(mask)
+        real(wp), intent(in) :: total, largest
+        integer(c_int64_t) :: mask
+
+        mask = shifta(transfer(total, mask) - transfer(largest, mask), 63)
+    end function below_largest
+
+    elemental function zero_unless(mask, x) result(kept)
+        integer(c_int64_t), intent(in) :: mask   !! all bits or none
+        real(wp), intent(in) :: x
+        real(wp) :: kept
+
+        kept = transfer(iand(transfer(x, mask), mask), x)
+    end function zero_unless
 
 end module friction_lane_block

@@ -1,4 +1,4 @@
-/* Chooses the copies of the vector kernels (friction_batch_kernel.f90, friction_slip_rate_kernel.f90) for the
+/* Chooses the copies of the vector kernels (src/friction_*_kernel.f90) for the
  * processor at hand. Empty where the build makes no copies: then the kernels themselves bear the names. */
 #include <stdint.h>
 
@@ -16,6 +16,12 @@ batch_kernel stickslip_batch_kernel, stickslip_batch_kernel_sse2, stickslip_batc
     stickslip_batch_kernel_avx512;
 slip_rate_kernel stickslip_slip_rate_kernel, stickslip_slip_rate_kernel_sse2, stickslip_slip_rate_kernel_avx2,
     stickslip_slip_rate_kernel_avx512;
+
+typedef void constants_kernel(const void *source, int64_t stride, int count, const double *props, double *constants,
+                              int *left);
+
+constants_kernel stickslip_constants_kernel, stickslip_constants_kernel_sse2, stickslip_constants_kernel_avx2,
+    stickslip_constants_kernel_avx512;
 
 enum instruction_set { SSE2, AVX2, AVX512 };
 
@@ -44,6 +50,14 @@ void stickslip_batch_kernel(const void *task, const double *constants, const dou
     static batch_kernel *const copies[] = {stickslip_batch_kernel_sse2, stickslip_batch_kernel_avx2,
                                            stickslip_batch_kernel_avx512};
     copies[instructions()](task, constants, du, statev, traction, tangent, left, n_left);
+}
+
+void stickslip_constants_kernel(const void *source, int64_t stride, int count, const double *props, double *constants,
+                                int *left)
+{
+    static constants_kernel *const copies[] = {stickslip_constants_kernel_sse2, stickslip_constants_kernel_avx2,
+                                               stickslip_constants_kernel_avx512};
+    copies[instructions()](source, stride, count, props, constants, left);
 }
 
 void stickslip_slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau,

@@ -1,0 +1,125 @@
+!> The constants of a block of contact points that have their own, checked and put in columns, in
+!> vector lanes. Compiled once for each vector instruction set, as `friction_batch_kernel` is.
+module friction_constants_kernel
+    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+    use friction_lane_block, only : c_cap, c_own, c_squeeze, constants_source, lanes, n_constants, &
+        no_cap
+    implicit none
+    private
+
+    public :: copy_constants
+
+    integer, parameter :: wp = c_double
+
+    !> Constants that are not zero are of ordinary size, or lanes do not take them.
+    real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
+
+contains
+
+    !> The constants of points 1 to `count`, and of lanes without a point those of the source. A
+    !> point that is left has those of the source, too; the routine for one point then judges it.
+    pure subroutine copy_constants(source, stride, count, props, constants, left) &
+        bind(C, name='stickslip_constants_kernel')
+        type(constants_source), intent(in) :: source
+        integer(c_int64_t), value, intent(in) :: stride   !! distance of constants, `count` or more
+        integer(c_int), value, intent(in) :: count        !! points, `lanes` at most
+        real(wp), intent(in) :: props(stride, *)
+        real(wp), intent(out) :: constants(lanes, n_constants)
+        integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
+        integer(c_int64_t) :: wrong(lanes)
+        integer :: k
+
+        wrong = 0
+        do k = 1, source%n_choices
+            call compare(count, props(:count, source%choice(k)), source%chosen(k), wrong)
+        end do
+        do k = 1, n_constants
+            constants(:, k) = source%value(k)
+            if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
+                source%lower(k) > 0.0_wp, constants(:, k), wrong)
+        end do
+        do k = c_own, n_constants
+            if (source%place(k) > 0) call follow_rules(source, k, constants, wrong)
+        end do
+        if (source%place(c_cap) > 0) where (constants(:, c_cap) <= 0.0_wp) &
+            constants(:, c_cap) = no_cap
+        if (source%place(c_squeeze) > 0) call invert(constants(:, c_squeeze))
+        left = 0
+        if (any(wrong /= 0)) then
+            left = merge(1_c_int, 0_c_int, wrong /= 0)
+            do k = 1, n_constants
+                where (left > 0) constants(:, k) = source%value(k)
+            end do
+        end if
+    end subroutine copy_constants
+
+    !> One constant of all points; where it is not of ordinary size the lane keeps what it has.
+    pure subroutine copy_column(count, from, not_zero, to, wrong)
+        integer, intent(in) :: count
+        real(wp), intent(in) :: from(count)
+        logical, intent(in) :: not_zero
+        real(wp), intent(inout) :: to(lanes)
+        integer(c_int64_t), intent(inout) :: wrong(lanes)   !! not 0 for what cannot be taken
+        integer(c_int64_t) :: number, zero
+        integer :: i
+
+        zero = merge(bits(most), 0_c_int64_t, not_zero)   ! that is refused, too
+        do i = 1, count
+            number = bits(from(i))
+            if (number == zero .or. (number > bits(least) .and. number < bits(most))) then
+                to(i) = from(i)
+            else
+                wrong(i) = 1
+            end if
+        end do
+    end subroutine copy_column
+
+    !> A constant that has to be the same at all points. Compares bits: silent where a comparison
+    !> with NaN raises an exception.
+    pure subroutine compare(count, from, chosen, wrong)
+        integer, intent(in) :: count
+        real(wp), intent(in) :: from(count), chosen
+        integer(c_int64_t), intent(inout) :: wrong(lanes)
+        integer :: i
+
+        do i = 1, count
+            wrong(i) = ior(wrong(i), ieor(bits(from(i)), bits(chosen)))
+        end do
+    end subroutine compare
+
+    !> Rules of module friction_law_constants that lanes can break although their constants are of
+    !> ordinary size.
+    pure subroutine follow_rules(source, k, constants, wrong)
+        type(constants_source), intent(in) :: source
+        integer, intent(in) :: k   !! column
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        integer(c_int64_t), intent(inout) :: wrong(lanes)
+
+        if (source%lower(k) > least) where (constants(:, k) < source%lower(k)) wrong = 1
+        if (source%upper(k) < most) where (constants(:, k) > source%upper(k)) wrong = 1
+        if (source%not_below(k) > 0) where (constants(:, k) < constants(:, source%not_below(k))) &
+            wrong = 1
+        if (source%not_above(k) > 0) where (constants(:, k) > constants(:, source%not_above(k))) &
+            wrong = 1
+    end subroutine follow_rules
+
+    !> mu_1/mu_2 from mu_2/mu_1, where 0 stands for 1.
+    pure subroutine invert(ratio)
+        real(wp), intent(inout) :: ratio(lanes)
+        integer :: i
+
+        do i = 1, lanes
+            ratio(i) = 1.0_wp / merge(ratio(i), 1.0_wp, ratio(i) > 0.0_wp)
+        end do
+    end subroutine invert
+
+    !> A number as an integer, which orders those above zero as they are: silent where a comparison
+    !> with NaN raises an exception.
+    elemental function bits(x)
+        real(wp), intent(in) :: x
+        integer(c_int64_t) :: bits
+
+        bits = transfer(x, bits)
+    end function bits
+
+end module friction_constants_kernel
