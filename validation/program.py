@@ -19,6 +19,11 @@ class Program:
         first, = self.tables('stability', groups, 'case_stability', columns=first_row)
         return first
 
+    def boundary(self, **groups):
+        """Where steady sliding of such an input changes its stability over the keys of its sweep."""
+        found, = self.tables('stability', groups, 'case_stability_boundary')
+        return found
+
     def tables(self, verb, groups, *names, columns=None):
         text = ''.join(f'&{group}\n' + ''.join(f'  {key} = {spelt(value)}\n' for key, value in keys.items()) + '/\n'
                        for group, keys in groups.items() if keys)

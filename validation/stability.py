@@ -167,7 +167,49 @@ The same closed forms against `stickslip stability`, which finds where the large
                    found['critical_damping'], 1e-10)
 
 
+# ---- two ways to move ----------------------------------------------------------------------------------
+
+MINIMAL = {'mass': 1.0, 'stiffness': 23.25, 'normal_traction': 10.0, 'normal_mass': 1.0, 'normal_stiffness': 7.75,
+           'tilt_stiffness': 4.5 * numpy.sqrt(0.75)}
+
+
+def mode_coupling(program, report):
+    report.section('Mode coupling', """
+The minimal model of Hoffmann, Fischer, Allgaier and Gaul (2002): a unit mass on springs of 11 and 20 at 150 and 30 degrees, a contact of stiffness 11, constant
+friction. `lambda^2 = -(k_11 + k_22)/2 +- sqrt((k_11 - k_22)^2/4 + k_12 (k_12 - mu k_3))` (theory.md, section 14). The growth in time is read off
+the maxima of the displacement across the interface, 4000 fixed steps to a swing, from next to steady sliding until it lifts off.""")
+    k_11, k_22, k_12, k_3 = 23.25, 18.75, MINIMAL['tilt_stiffness'], 11.0
+    source = 'Hoffmann et al. 2002'
+
+    def case(mu, **more):
+        return {'friction': {'law': 'coulomb', 'alpha_n': k_3, 'alpha_t': 1e4, 'mu': mu}, 'slider': MINIMAL, 'drive': {'velocity': 20.0},
+                'time': {'t_end': 1.0, 'dt': 0.1}, **more}
+
+    critical = ((k_11 - k_22)**2 / (4 * k_12) + k_12) / k_3
+    for mu in (0.3, 0.5, 1.0):
+        root = numpy.sqrt(complex((k_11 - k_22)**2 / 4 + k_12 * (k_12 - mu * k_3)))
+        expected = numpy.sqrt(-(k_11 + k_22) / 2 + root)
+        found = program.stability(**case(mu))
+        report.row(f'`mu = {mu:g}`: growth', source, abs(expected.real), found['growth_rate'], 1e-10, absolute=True)
+        if mu > critical:
+            report.row(f'`mu = {mu:g}`: frequency', source, abs(expected.imag) / (2 * numpy.pi), found['frequency'], 1e-10)
+    found = program.boundary(**case(0.5, sweep={'key': 'slider%stiffness', 'values': [16.0, 40.0], 'key2': 'friction%mu', 'values2': [0.1, 5.0]}))
+    errors = abs(found['friction%mu'] / (((found['slider%stiffness'] - k_22)**2 / (4 * k_12) + k_12) / k_3) - 1)
+    report.row(f'flutter boundary, friction coefficient over stiffness: largest error of {len(errors)} points', source, 0.0, errors.max(), 1e-10)
+    mu = 0.6
+    growth_rate = numpy.sqrt(complex(-(k_11 + k_22) / 2 + numpy.sqrt(complex((k_11 - k_22)**2 / 4 + k_12 * (k_12 - mu * k_3))))).real
+    pressure = program.stability(**case(mu))['normal_traction']
+    rows, _ = program.run(**case(mu, time={'t_end': 12.0, 'dt': 3.4e-4}, output={'interval': 10}, initial={
+        'mu': mu, 'velocity': 20.0, 'spring_force': mu * pressure + k_12 * (10 - pressure) / k_3}))
+    away = rows['normal_displacement'] + pressure / k_3
+    use = (rows['time'] > 4) & (numpy.maximum.accumulate(rows['normal_displacement']) < 0)
+    inner = away[1:-1]
+    peaks = numpy.flatnonzero((inner > away[:-2]) & (inner > away[2:]) & use[1:-1]) + 1
+    report.row('growth in a run with `mu = 0.6`', source, abs(growth_rate), numpy.polyfit(rows['time'][peaks], numpy.log(away[peaks]), 1)[0], 1e-2)
+
+
 def validate(program, report):
     rate_and_state(program, report)
     subloading(program, report)
     eigenvalues(program, report)
+    mode_coupling(program, report)

@@ -6,7 +6,8 @@ module simulation
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, scattered
-    use friction_mod, only : friction_message, friction_snap_back, statev_u_et
+    use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
+        statev_u_et
     use integrator_choice, only : choose_integrator
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
@@ -45,6 +46,8 @@ contains
 
         system = slider(run%mass, run%stiffness, run%damping, run%area, run%props, &
             run%chain%coupling, run%chain%ends)
+        system%across = run%across
+        system%across%rest = -run%drive%normal_traction(0.0_dp, 1) / run%props(prop_alpha_n)
         if (run%chain%scatter > 0.0_dp) system%load = scattered(run%chain)
         call live%chain_events%prepare(run)
         call live%slip_events%prepare(run)

@@ -31,6 +31,7 @@ contains
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
         call file%get_real('slider', 'damping', run%damping, at_least(0.0_dp), default=0.0_dp)
         call file%get_real('slider', 'area', run%area, above(0.0_dp), default=1.0_dp)
+        call read_normal_motion(file, run)
         if (file%given('drive', 'normal') .or. file%given('drive', 'file')) then
             call file%get_real('slider', 'normal_traction', normal, at_least(0.0_dp), &
                 default=0.0_dp)
@@ -42,6 +43,8 @@ contains
         call read_time(file, run)
         call check_scale(file, run)
         call read_chain(file, run%mass, run%chain)
+        if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
+            'normal_mass', 'is for one block')
         call read_contact(file, run)
         call derive_slip_rate(file, run)
         call read_events(file, run)
@@ -55,6 +58,34 @@ contains
         call file%refuse_unknown()
         run%fingerprint = fingerprint_of(file%listing(without='sweep'), run%drive)
     end subroutine read_settings
+
+    !> Mass, spring and damper across the interface. The springs of both directions are one: its
+    !> energy must not be negative, whichever way the block goes.
+    subroutine read_normal_motion(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(inout) :: run
+        character(len=*), parameter :: group = 'slider'
+        character(len=16), parameter :: others(3) = [character(len=16) :: 'normal_stiffness', &
+            'normal_damping', 'tilt_stiffness']
+        integer :: i
+
+        if (file%given(group, 'normal_mass')) then
+            call file%get_real(group, 'normal_mass', run%across%mass, above(0.0_dp))
+            if (.not. run%mass > 0.0_dp) call file%reject(group, 'normal_mass', 'needs a mass > 0')
+        end if
+        call file%get_real(group, 'normal_stiffness', run%across%stiffness, at_least(0.0_dp), &
+            default=0.0_dp)
+        call file%get_real(group, 'normal_damping', run%across%damping, at_least(0.0_dp), &
+            default=0.0_dp)
+        call file%get_real(group, 'tilt_stiffness', run%across%tilt, any_number(), default=0.0_dp)
+        do i = 1, size(others)
+            if (file%given(group, 'normal_mass')) exit
+            if (file%given(group, trim(others(i)))) call file%reject(group, trim(others(i)), &
+                'needs a normal_mass')
+        end do
+        if (run%across%tilt**2 > run%stiffness * run%across%stiffness) call file%reject(group, &
+            'tilt_stiffness', 'must not exceed sqrt(stiffness normal_stiffness) in magnitude')
+    end subroutine read_normal_motion
 
     !> What counts as a slip event.
     subroutine read_events(file, run)
@@ -279,7 +310,7 @@ contains
         law = friction_facts(run%props)
         run%order = max(1, law%order)
         run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
-            file%given(group, 'rho_infinity')])
+            file%given(group, 'rho_infinity'), run%across%free()])
     end subroutine read_adaptive
 
     !> The spring of the contact, which continuous time can do without.
@@ -293,8 +324,8 @@ contains
         run%rigid_contact = contact == 'rigid'
         if (.not. run%rigid_contact) return
         if (.not. run%adaptive .or. run%newmark .or. run%chain%n_blocks > 1) call file%reject( &
-            group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
-            // 'rho_infinity')
+            group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma, ' &
+            // 'rho_infinity and normal_mass')
         if (.not. allocated(run%props)) return
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')

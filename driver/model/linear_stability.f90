@@ -2,7 +2,7 @@
 !> of a key of the input at which that changes (docs/stability.md).
 module linear_stability
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : prop_alpha_t
+    use friction_mod, only : prop_alpha_n, prop_alpha_t
     use smooth_function, only : find_root, function_of_one, values
     use steady_sliding, only : contact_response, find_steady_sliding, sliding_case
     implicit none
@@ -10,7 +10,7 @@ module linear_stability
 
     public :: analyse, critical_value, find_critical, stability
 
-    integer, parameter :: most_states = 5
+    integer, parameter :: most_states = 7
 
     !> What becomes of small disturbances.
     integer, parameter, public :: undecided = 0   !! there is no steady sliding
@@ -37,6 +37,8 @@ module linear_stability
         real(dp) :: traction = 0.0_dp    !! of the contact; a state where it depends on the slip
                                          !! rate and has a spring [F/L^2]
         real(dp) :: memory(2) = 0.0_dp   !! of the law
+        real(dp) :: away = 0.0_dp        !! of a block that moves across the interface [L]
+        real(dp) :: rising = 0.0_dp      !! its velocity [L/T]
     end type disturbance
 
     !> A value of a key at which steady sliding becomes stable or unstable.
@@ -162,7 +164,8 @@ contains
         type(disturbance), intent(in) :: d
         real(dp), allocatable :: x(:)
 
-        x = pack([d%extension, d%velocity, d%traction, d%memory], states(this, contact))
+        x = pack([d%extension, d%velocity, d%traction, d%memory, d%away, d%rising], states(this, &
+            contact))
     end function packed
 
     pure function unpacked(this, contact, x) result(d)
@@ -173,8 +176,18 @@ contains
         real(dp) :: all(most_states)
 
         all = unpack(x, states(this, contact), 0.0_dp)
-        d = disturbance(all(1), all(2), all(3), all(4:5))
+        d = disturbance(all(1), all(2), all(3), all(4:5), all(6), all(7))
     end function unpacked
+
+    !> Is the traction a state of its own?
+    pure function states_traction(this, contact) result(yes)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        logical :: yes
+
+        yes = .not. contact%follows_velocity .and. depends_on_rate(contact) &
+            .and. .not. in_series(this)
+    end function states_traction
 
     pure function states(this, contact) result(are)
         type(sliding_case), intent(in) :: this
@@ -184,27 +197,60 @@ contains
 
         sprung = .not. contact%follows_velocity
         are = [.not. in_series(this) .or. .not. sprung .or. depends_on_rate(contact), &
-            this%mass > 0.0_dp, &
-            sprung .and. depends_on_rate(contact) .and. .not. in_series(this), &
-            contact%remembered >= 1, contact%remembered >= 2]
+            this%mass > 0.0_dp, states_traction(this, contact), &
+            contact%remembered >= 1, contact%remembered >= 2, this%across%free(), &
+            this%across%free()]
     end function states
 
-    !> The rate equations in small disturbances d.
+    !> The rate equations in small disturbances d. Forces and velocities along the interface count
+    !> in the sense of the slip.
     pure subroutine rates_of(this, contact, d, rates, failed)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         type(disturbance), intent(in) :: d
         type(disturbance), intent(out) :: rates
         logical, intent(out) :: failed   !! no velocity follows
-        real(dp) :: pull, at_rest, drift(2), traction, v, slip, softer, both, unloading
+        real(dp) :: pull, pressure(2), drift(2), motion(3), tilt
 
-        pull = this%stiffness * d%extension
-        at_rest = dot_product(contact%by_memory, d%memory)   ! traction without slip
-        drift = matmul(contact%rate_by_memory, d%memory)     ! of the memory, likewise
-        v = d%velocity
+        tilt = sign(1.0_dp, this%velocity) * this%across%tilt
+        pull = this%stiffness * d%extension - tilt * d%away
+        pressure = -this%props(prop_alpha_n) * [d%away, d%rising]   ! and its rate
+        drift = matmul(contact%rate_by_memory, d%memory) + contact%rate_by_pressure * pressure(1) &
+            + contact%rate_by_loading * pressure(2)   ! of the memory, without slip
+        call contact_motion(this, contact, d, pull, pressure, drift, motion, failed)
+        if (failed) return
+        associate (v => motion(1), slip => motion(2), traction => motion(3))
+            rates%extension = -v
+            if (states_traction(this, contact)) rates%traction = this%props(prop_alpha_t) &
+                * (v - slip)
+            if (this%mass > 0.0_dp) rates%velocity = (pull - this%damping * v - this%area &
+                * traction) / this%mass
+            rates%memory = drift + contact%rate_by_rate * slip
+        end associate
+        if (.not. this%across%free()) return
+        rates%away = d%rising
+        rates%rising = (tilt * d%extension - this%across%stiffness * d%away &
+            - this%across%damping * d%rising + this%area * pressure(1)) / this%across%mass
+    end subroutine rates_of
+
+    !> Velocity of the block, slip rate and traction.
+    pure subroutine contact_motion(this, contact, d, pull, pressure, drift, motion, failed)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        type(disturbance), intent(in) :: d
+        real(dp), intent(in) :: pull          !! of the drive spring [F]
+        real(dp), intent(in) :: pressure(2)   !! and its rate [F/L^2], [F/L^2/T]
+        real(dp), intent(in) :: drift(2)      !! of the memory, without slip
+        real(dp), intent(out) :: motion(3)
+        logical, intent(out) :: failed        !! no velocity follows
+        real(dp) :: at_rest, rising, v, slip, traction, softer, both, unloading
+
         failed = .false.
+        at_rest = dot_product(contact%by_memory, d%memory) + contact%by_pressure * pressure(1)
+        rising = dot_product(contact%by_memory, drift) + contact%by_pressure * pressure(2)
+        v = d%velocity
         associate (alpha => this%props(prop_alpha_t), s => this%area, c => this%damping)
-            softer = alpha / (alpha + this%stiffness / s)    ! what both springs are of one
+            softer = alpha / (alpha + this%stiffness / s)   ! both springs in series, of the contact
             if (contact%follows_velocity) then
                 failed = .not. this%mass > 0.0_dp .and. .not. abs(c + s * contact%by_rate) > 0.0_dp
                 if (failed) return
@@ -217,7 +263,6 @@ contains
                 slip = (traction - at_rest) / contact%by_rate
                 if (.not. this%mass > 0.0_dp .and. c > 0.0_dp) v = (pull - s * traction) / c
                 if (in_series(this)) v = softer * slip
-                rates%traction = alpha * (v - slip)
             else
                 traction = at_rest
                 if (.not. this%mass > 0.0_dp .and. c > 0.0_dp) v = (pull - s * traction) / c
@@ -226,16 +271,14 @@ contains
                 unloading = both + dot_product(contact%by_memory, contact%rate_by_rate)
                 failed = .not. abs(unloading) > 0.0_dp
                 if (failed) return
-                slip = -dot_product(contact%by_memory, drift)
+                slip = -rising
                 if (.not. in_series(this)) slip = slip + alpha * v
                 slip = slip / unloading
                 if (in_series(this)) v = softer * slip
             end if
-            rates%extension = -v
-            if (this%mass > 0.0_dp) rates%velocity = (pull - c * v - s * traction) / this%mass
-            rates%memory = drift + contact%rate_by_rate * slip
         end associate
-    end subroutine rates_of
+        motion = [v, slip, traction]
+    end subroutine contact_motion
 
     !> Eigenvalues, the largest real part first. Each is improved by its two eigenvectors: what is
     !> left of round-off is that of the matrix entry by entry, however far its numbers are apart.
@@ -331,8 +374,8 @@ contains
         growth%key = key
         growth%result => result
         growth%by_verdict = .true.
-        growth%same_contact = any(key == [character(len=16) :: 'slider%mass', 'slider%stiffness', &
-            'slider%damping', 'slider%area'])
+        growth%same_contact = .not. this%across%free() .and. any(key == [character(len=16) :: &
+            'slider%mass', 'slider%stiffness', 'slider%damping', 'slider%area'])
         call analyse(this, result)
         if (len(result%problem) > 0) growth%same_contact = .false.
     end subroutine prepare_growth

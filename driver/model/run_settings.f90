@@ -3,7 +3,7 @@ module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_settings, only : chain
     use loading_programme, only : programme
-    use slider_system, only : initial_values
+    use slider_system, only : initial_values, normal_motion
     use unit_names, only : units
     implicit none
     private
@@ -16,6 +16,7 @@ module run_settings
         real(dp) :: stiffness = 0.0_dp      !! of the drive spring, > 0 [F/L]
         real(dp) :: damping = 0.0_dp        !! [F T/L]
         real(dp) :: area = 1.0_dp           !! apparent contact area [L^2]
+        type(normal_motion) :: across       !! the interface; its place at rest follows
         type(initial_values) :: initial
         type(programme) :: drive
         type(chain) :: chain

@@ -4,7 +4,8 @@
 !>     M a_i = K (x_d - x_i) + K_c (x_(i+1) - 2 x_i + x_(i-1)) - C v_i - S f_t,i
 !>
 !> The friction forces come from the same routines that finite-element hosts call; the normal
-!> traction is controlled through the penetration that carries it.
+!> traction is controlled through the penetration that carries it or, where a block has a mass
+!> across the interface, follows from the motion of that (docs/theory.md, section 14).
 module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
@@ -16,7 +17,8 @@ module slider_system
     private
 
     public :: apply_normal_traction, blend, displace, energy_balance, friction_forces, &
-        initial_state, initial_values, place, set_accelerations, slider, slider_state, swap_states
+        initial_state, initial_values, normal_motion, place, set_accelerations, slider, &
+        slider_state, swap_states
 
     !> What the first and the last block are coupled to.
     integer, parameter, public :: ends_free = 1       !! nothing
@@ -24,6 +26,19 @@ module slider_system
     integer, parameter, public :: ends_periodic = 3   !! each other
     integer, parameter, public :: ends_free_fixed = 4 !! the first to nothing, the last to a wall
     integer, parameter, public :: ends_fixed_free = 5 !! the first to a wall, the last to nothing
+
+    !> How a block moves across the interface, if it does.
+    type :: normal_motion
+        real(dp) :: mass = 0.0_dp        !! 0: it does not, its normal traction is prescribed
+                                         !! [F T^2/L]
+        real(dp) :: stiffness = 0.0_dp   !! of the drive spring across the interface [F/L]
+        real(dp) :: damping = 0.0_dp     !! [F T/L]
+        real(dp) :: tilt = 0.0_dp        !! stiffness of the drive spring between both directions
+                                         !! [F/L]
+        real(dp) :: rest = 0.0_dp        !! place at which that spring pulls nowhere [L]
+    contains
+        procedure :: free
+    end type normal_motion
 
     !> What does not change during a run.
     type :: slider
@@ -34,9 +49,10 @@ module slider_system
         real(dp) :: walls(2) = 0.0_dp                !! where they stand [L]
         real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
                                            !! programme; all 1 if not allocated [-]
+        type(normal_motion) :: across
     contains
         procedure :: add_coupling, coupling_energy
-        procedure :: account
+        procedure :: account, carried_pressure, pull, push
         procedure :: take_stock, energy_of
     end type slider
 
@@ -57,6 +73,9 @@ module slider_system
         real(dp) :: time = 0.0_dp                !! [T]
         real(dp) :: drive = 0.0_dp               !! position of the drive [L]
         real(dp) :: normal = 0.0_dp              !! normal traction [F/L^2]
+        real(dp) :: load = 0.0_dp                !! that of the programme [F/L^2]
+        real(dp) :: v_n = 0.0_dp, a_n = 0.0_dp   !! across the interface, away from the base; only
+                                                 !! where a block is free to [L/T], [L/T^2]
         real(dp) :: drive_work = 0.0_dp          !! of the drive since the start [F L]
         real(dp) :: damped = 0.0_dp              !! energy lost to the dampers since then [F L]
         real(dp), allocatable :: x(:), v(:), a(:)   !! of each block [L], [L/T], [L/T^2]
@@ -100,6 +119,7 @@ contains
         state%friction = zero
         state%statev = virgin
         state%normal = normal
+        state%load = normal
         call friction_forces(system, virgin, normal, zero, 0.0_dp, state%statev, &
             state%friction, tangent, status)
     end subroutine initial_state
@@ -136,6 +156,46 @@ contains
         call set_accelerations(system, state)
     end subroutine displace
 
+    !> Does the block move across the interface by itself?
+    pure function free(self) result(yes)
+        class(normal_motion), intent(in) :: self
+        logical :: yes
+
+        yes = self%mass > 0.0_dp
+    end function free
+
+    !> Force of the drive spring along the interface, of a block at x that stands at u_n.
+    elemental function pull(self, drive, x, u_n) result(force)
+        class(slider), intent(in) :: self
+        real(dp), intent(in) :: drive, x, u_n   !! [L]
+        real(dp) :: force                       !! [F]
+
+        force = self%stiffness * (drive - x)
+        if (self%across%mass > 0.0_dp) force = force - self%across%tilt * (u_n - self%across%rest)
+    end function pull
+
+    !> Force on a block away from the base, but for the contact's.
+    pure function push(self, drive, load, x, u_n, v_n) result(force)
+        class(slider), intent(in) :: self
+        real(dp), intent(in) :: drive       !! [L]
+        real(dp), intent(in) :: load        !! normal traction of the programme [F/L^2]
+        real(dp), intent(in) :: x, u_n      !! [L]
+        real(dp), intent(in) :: v_n         !! [L/T]
+        real(dp) :: force                   !! [F]
+
+        force = self%across%tilt * (drive - x) - self%across%stiffness * (u_n - self%across%rest) &
+            - self%across%damping * v_n - self%area * load
+    end function push
+
+    !> Pressure in a contact that stands at u_n.
+    pure function carried_pressure(self, u_n) result(pressure)
+        class(slider), intent(in) :: self
+        real(dp), intent(in) :: u_n   !! [L]
+        real(dp) :: pressure          !! [F/L^2]
+
+        pressure = max(0.0_dp, -self%props(prop_alpha_n) * u_n)
+    end function carried_pressure
+
     !> Accelerations by the equation of motion; without a mass they are what they were.
     pure subroutine set_accelerations(system, state)
         type(slider), intent(in) :: system
@@ -145,6 +205,11 @@ contains
         state%a = state%spring - system%damping * state%v - state%friction
         call system%add_coupling(state%x, 1.0_dp, state%a)
         state%a = state%a / system%mass
+        if (.not. system%across%free()) return
+        associate (u_n => state%statev(1, statev_u_n))
+            state%a_n = (system%push(state%drive, state%load, state%x(1), u_n, state%v_n) &
+                + system%area * system%carried_pressure(u_n)) / system%across%mass
+        end associate
     end subroutine set_accelerations
 
     !> Adds the forces of the springs between neighbours, times a factor.
@@ -216,6 +281,7 @@ contains
 
         mixed%drive_work = dot_product(weights, states%drive_work)
         mixed%damped = dot_product(weights, states%damped)
+        mixed%v_n = dot_product(weights, states%v_n)
         mixed%x(:) = weights(1) * states(1)%x
         mixed%v(:) = weights(1) * states(1)%v
         mixed%friction(:) = weights(1) * states(1)%friction
@@ -332,6 +398,11 @@ contains
         integer :: status
 
         taken = .true.
+        state%load = normal
+        if (system%across%free()) then
+            call set_accelerations(system, state)
+            return
+        end if
         if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
         allocate (zero(size(state%x)), tangent(size(state%x)))
         zero = 0.0_dp
@@ -351,6 +422,9 @@ contains
         call file%visit(self%time)
         call file%visit(self%drive)
         call file%visit(self%normal)
+        call file%visit(self%load)
+        call file%visit(self%v_n)
+        call file%visit(self%a_n)
         call file%visit(self%drive_work)
         call file%visit(self%damped)
         call file%visit(self%x)
@@ -377,6 +451,9 @@ contains
         to%time = from%time
         to%drive = from%drive
         to%normal = from%normal
+        to%load = from%load
+        to%v_n = from%v_n
+        to%a_n = from%a_n
         to%drive_work = from%drive_work
         to%damped = from%damped
         call move_alloc(from%x, to%x)
@@ -404,6 +481,11 @@ contains
         end do
         new%drive_work = old%drive_work + 0.5_dp * pull * (new%drive - old%drive)
         new%damped = old%damped + 0.5_dp * self%damping * drag
+        if (.not. self%across%free()) return
+        associate (du_n => new%statev(1, statev_u_n) - old%statev(1, statev_u_n))
+            new%drive_work = new%drive_work - 0.5_dp * self%area * (old%load + new%load) * du_n
+            new%damped = new%damped + 0.5_dp * self%across%damping * (old%v_n + new%v_n) * du_n
+        end associate
     end subroutine account
 
     !> Energies that a state holds: of the motion, of the springs, of the contact; and what has come
@@ -431,7 +513,24 @@ contains
         energy%dissipated = self%area * dissipated
         energy%drive_work = state%drive_work
         energy%damped = state%damped
+        if (self%across%free()) call take_stock_across(self, state, energy)
     end subroutine take_stock
+
+    !> Adds what is held across the interface.
+    pure subroutine take_stock_across(self, state, energy)
+        class(slider), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        type(energy_balance), intent(inout) :: energy
+        real(dp) :: away, stretch   !! of the drive spring in both directions [L]
+
+        away = state%statev(1, statev_u_n) - self%across%rest
+        stretch = state%drive - state%x(1)
+        energy%kinetic = energy%kinetic + 0.5_dp * self%across%mass * state%v_n**2
+        energy%spring = 0.5_dp * self%stiffness * stretch**2 - self%across%tilt * stretch * away &
+            + 0.5_dp * self%across%stiffness * away**2
+        energy%contact = energy%contact + 0.5_dp * self%area &
+            * self%carried_pressure(state%statev(1, statev_u_n))**2 / self%props(prop_alpha_n)
+    end subroutine take_stock_across
 
     !> Held by the springs, the contact and the motion together.
     pure function energy_of(self, state) result(total)

@@ -3,8 +3,10 @@
 module steady_sliding
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : facts => law_facts, friction_facts, friction_law_of, friction_ok, &
-        friction_place, law_state, load_rates, onset_drops, read_surface, sliding_surface
+        friction_place, law_state, load_rates, onset_drops, prop_alpha_n, read_surface, &
+        sliding_surface
     use run_settings, only : settings
+    use slider_system, only : normal_motion
     use smooth_function, only : derivative, find_root, function_of_one, values
     implicit none
     private
@@ -16,7 +18,9 @@ module steady_sliding
         real(dp) :: mass = 0.0_dp, stiffness = 0.0_dp, damping = 0.0_dp   !! as of `slider`
         real(dp) :: area = 1.0_dp                    !! [L^2]
         real(dp) :: velocity = 0.0_dp                !! of the drive [L/T]
-        real(dp) :: normal = 0.0_dp                  !! normal traction [F/L^2]
+        real(dp) :: normal = 0.0_dp                  !! normal traction that is applied [F/L^2]
+        real(dp) :: normal_at_start = 0.0_dp         !! of the programme [F/L^2]
+        type(normal_motion) :: across                !! the interface
         logical :: rigid = .false.                   !! the contact has no spring
         real(dp), allocatable :: props(:)            !! constants of the friction routine
         type(sliding_surface), private :: surface    !! made of these
@@ -46,9 +50,10 @@ module steady_sliding
     end type contact_response
 
     !> Keys of the slider and its drive on which steady sliding depends.
-    character(len=*), parameter :: slider_keys(7) = [character(len=22) :: 'slider%mass', &
+    character(len=*), parameter :: slider_keys(11) = [character(len=23) :: 'slider%mass', &
         'slider%stiffness', 'slider%damping', 'slider%area', 'slider%normal_traction', &
-        'drive%normal', 'drive%velocity']
+        'drive%normal', 'drive%velocity', 'slider%normal_mass', 'slider%normal_stiffness', &
+        'slider%normal_damping', 'slider%tilt_stiffness']
 
     !> What a law's traction and rates can be taken to depend on.
     integer, parameter :: on_mu = 1, on_ratio = 2, on_memory = 3, on_ln_memory = 4, &
@@ -64,6 +69,14 @@ module steady_sliding
     contains
         procedure :: at => resistance_and_rates
     end type law_about
+
+    !> The balance of forces across the interface, over the pressure.
+    type, extends(function_of_one) :: balance_across
+        type(sliding_case), pointer :: this => null()
+        type(law_about) :: law
+    contains
+        procedure :: at => force_across
+    end type balance_across
 
     !> The rate of what the law remembers, as a function of that.
     type, extends(law_about) :: memory_rate
@@ -85,6 +98,8 @@ contains
         this%area = run%area
         this%velocity = run%drive%velocity(piece)
         this%normal = run%drive%normal(piece)
+        this%normal_at_start = run%drive%normal(1)
+        this%across = run%across
         this%rigid = run%rigid_contact
         this%props = run%props
         call read_surface(this%props, this%surface, this%status)
@@ -126,12 +141,20 @@ contains
             value = self%normal
         case ('drive%velocity')
             value = self%velocity
+        case ('slider%normal_mass')
+            value = self%across%mass
+        case ('slider%normal_stiffness')
+            value = self%across%stiffness
+        case ('slider%normal_damping')
+            value = self%across%damping
+        case ('slider%tilt_stiffness')
+            value = self%across%tilt
         case default
             value = self%props(place_of(self, key))
         end select
     end function value_of
 
-    !> Gives a key that is known another value.
+    !> Gives a key that is known another value; a velocity keeps its sense.
     subroutine set(self, key, value)
         class(sliding_case), intent(inout) :: self
         character(len=*), intent(in) :: key   !! group%key
@@ -148,8 +171,17 @@ contains
             self%area = value
         case ('slider%normal_traction', 'drive%normal')
             self%normal = value
+            self%normal_at_start = value
         case ('drive%velocity')
-            self%velocity = value
+            self%velocity = sign(value, self%velocity)
+        case ('slider%normal_mass')
+            self%across%mass = value
+        case ('slider%normal_stiffness')
+            self%across%stiffness = value
+        case ('slider%normal_damping')
+            self%across%damping = value
+        case ('slider%tilt_stiffness')
+            self%across%tilt = value
         case default
             self%props(place_of(self, key)) = value
             call read_surface(self%props, self%surface, self%status)
@@ -184,18 +216,20 @@ contains
         law%surface => this%surface
         law%rate = abs(this%velocity)
         law%pressure = this%normal
-        contact%pressure = this%normal
-        associate (traits => this%surface%traits)
+        associate (traits => this%surface%traits, known => friction_facts(this%props))
             contact%follows_velocity = this%rigid .or. traits%onset == onset_drops
             contact%remembered = merge(2, traits%memory / 2, traits%memory == 1)
-            call settle_memory(friction_facts(this%props), law, contact%remembered, problem)
+            call settle_memory(known, law, contact%remembered, problem)
             if (len(problem) > 0) return
+            if (this%across%free()) call find_pressure(this, law, problem)
+            if (len(problem) > 0) return
+            contact%pressure = law%pressure
+            contact%state = law%state
+            call this%surface%law%resistance_at(law%state, law%rate, law%pressure, &
+                contact%traction, by_rate)
+            contact%capped = contact%traction >= this%surface%tau_max
+            call differentiate(known, law, contact)
         end associate
-        contact%state = law%state
-        call this%surface%law%resistance_at(law%state, law%rate, law%pressure, contact%traction, &
-            by_rate)
-        contact%capped = contact%traction >= this%surface%tau_max
-        call differentiate(friction_facts(this%props), law, contact)
         contact%by_rate = by_rate
         if (.not. contact%capped) return
         contact%traction = this%surface%tau_max
@@ -203,6 +237,55 @@ contains
         contact%by_memory = 0.0_dp
         contact%by_pressure = 0.0_dp
     end subroutine find_steady_sliding
+
+    !> The pressure with which a block that is free to move across the interface slides steadily.
+    !> What the law remembers then does not depend on it.
+    subroutine find_pressure(this, law, problem)
+        type(sliding_case), target, intent(in) :: this
+        type(law_about), intent(inout) :: law
+        character(len=:), allocatable, intent(out) :: problem
+        real(dp), parameter :: highest = 1.0e6_dp   !! pressure, part of the normal traction
+        type(balance_across) :: balance
+        real(dp) :: upper, y(values)
+
+        problem = ''
+        balance%this => this
+        balance%law = law
+        y = balance%at(0.0_dp)
+        if (y(1) >= 0.0_dp) then
+            problem = 'the drive spring would lift the block off the base'
+            return
+        end if
+        upper = this%normal
+        do while (upper < highest * this%normal)
+            y = balance%at(upper)
+            if (y(1) > 0.0_dp) exit
+            upper = 2.0_dp * upper
+        end do
+        if (y(1) > 0.0_dp) then
+            law%pressure = find_root(balance, 0.0_dp, upper)
+        else
+            problem = 'friction would press the block on the base ever harder: it locks'
+        end if
+    end subroutine find_pressure
+
+    !> Force on the block away from the base, in steady sliding under a pressure.
+    function force_across(self, x) result(y)
+        class(balance_across), intent(in) :: self
+        real(dp), intent(in) :: x   !! [F/L^2]
+        real(dp) :: y(values)
+        real(dp) :: traction, by_rate, away, stretch
+
+        call self%law%surface%law%resistance_at(self%law%state, self%law%rate, x, traction, by_rate)
+        traction = min(traction, self%law%surface%tau_max)
+        associate (this => self%this, across => self%this%across)
+            away = (this%normal_at_start - x) / this%props(prop_alpha_n)
+            stretch = (sign(1.0_dp, this%velocity) * (this%area * traction + this%damping &
+                * self%law%rate) + across%tilt * away) / this%stiffness
+            y = 0.0_dp
+            y(1) = across%tilt * stretch - across%stiffness * away + this%area * (x - this%normal)
+        end associate
+    end function force_across
 
     !> What the law remembers when it has slid for ever. What does not count any more by then is
     !> not among what is remembered.

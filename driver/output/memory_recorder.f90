@@ -3,7 +3,8 @@ module memory_recorder
     use, intrinsic :: iso_c_binding, only : c_null_char
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use run_observer, only : observer, step_news
-    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row
+    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
+        series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
     implicit none
@@ -25,6 +26,7 @@ module memory_recorder
         type(memory_table) :: series, events
         type(row_clock) :: clock
         real(dp) :: area = 1.0_dp   !! contact area of a block [L^2]
+        integer :: columns = 0      !! of the time series
     contains
         procedure :: prepare, begin, see
     end type memory_watch
@@ -37,7 +39,8 @@ contains
 
         self%area = run%area
         call self%clock%prepare(run)
-        call self%series%start(trim(series_columns(run%props)))
+        self%columns = series_size(run)
+        call self%series%start(series_columns(run))
         call self%events%start(event_columns)
     end subroutine prepare
 
@@ -46,7 +49,7 @@ contains
         type(slider_state), intent(in) :: start
         type(step_news), intent(inout) :: news
 
-        call self%series%add(series_row(start))
+        call self%series%add(series_row(start, self%columns))
     end subroutine begin
 
     subroutine see(self, old, new, news)
@@ -57,7 +60,7 @@ contains
         integer :: i
 
         call self%clock%tick(old, new, news, due)
-        if (due) call self%series%add(series_row(new))
+        if (due) call self%series%add(series_row(new, self%columns))
         do i = 1, size(news%slip_events)
             call self%events%add(event_row(news%slip_events(i), self%area))
         end do

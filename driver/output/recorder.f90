@@ -7,8 +7,8 @@ module recorder
     use field_file, only : chain_fields
     use number_text, only : full_row
     use run_observer, only : observer, step_news
-    use run_rows, only : event_columns, event_row, n_series, row_clock, series_columns, &
-        series_row
+    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
+        series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
@@ -56,10 +56,10 @@ contains
         self%n_blocks = run%chain%n_blocks
         self%area = run%area
         call self%clock%prepare(run)
-        self%columns = trim(series_columns(run%props))
+        self%columns = series_columns(run)
         self%fields_interval = run%fields
         self%table_limit = gigabyte * run%table_limit
-        call self%picture%prepare(columns=n_series, force=6, speed=4)
+        call self%picture%prepare(columns=series_size(run), force=6, speed=4)
     end subroutine prepare
 
     !> Begins the files of a new run. The catalogue of a chain has other columns than that of one
@@ -211,9 +211,9 @@ contains
     subroutine write_state(self, state)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: state
-        real(dp) :: values(n_series)
+        real(dp) :: values(self%picture%columns)
 
-        values = series_row(state)
+        values = series_row(state, size(values))
         call self%series%write_line(full_row(values))
         call self%picture%add(values)
         self%rows = self%rows + 1

@@ -27,7 +27,9 @@ contains
         call values%set('internal', trim(internal_variable(run%props)))
         call values%set('slowest', smallest_part * maxval(abs(run%drive%velocity)))
         call values%set('thinned', merge(0, 1, file == stem // '.csv'))
-        if (internal_variable(run%props) == 'theta') then
+        if (run%across%free()) then
+            call values%draw('run_two_way', directory, stem, problem)
+        else if (internal_variable(run%props) == 'theta') then
             call values%draw('run_rate_state', directory, stem, problem)
         else
             call values%draw('run', directory, stem, problem)

@@ -2,7 +2,7 @@
 module run_rows
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
-    use friction_mod, only : statev_mu, statev_r, statev_slip
+    use friction_mod, only : statev_mu, statev_r, statev_slip, statev_u_n
     use law_facts, only : internal_variable
     use run_observer, only : step_news
     use run_settings, only : next_row, settings
@@ -11,9 +11,8 @@ module run_rows
     implicit none
     private
 
-    public :: event_row, row_clock, series_columns, series_row
+    public :: event_row, row_clock, series_columns, series_row, series_size
 
-    integer, parameter, public :: n_series = 11   !! columns of the time series
     character(len=*), parameter, public :: event_columns = &
         'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
 
@@ -49,23 +48,34 @@ contains
         if (self%steps == self%interval) self%steps = 0
     end subroutine tick
 
-    !> Names of the columns of the time series; the law's internal variable has its own.
-    pure function series_columns(props) result(names)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        character(len=128) :: names
+    !> How many columns has the time series of a run?
+    pure function series_size(run) result(columns)
+        type(settings), intent(in) :: run
+        integer :: columns
+
+        columns = merge(13, 11, run%across%free())
+    end function series_size
+
+    !> Their names; the law's internal variable has its own.
+    pure function series_columns(run) result(names)
+        type(settings), intent(in) :: run
+        character(len=:), allocatable :: names
 
         names = 'time,drive,displacement,velocity,acceleration,spring_force,friction_force,mu,' &
-            // trim(internal_variable(props)) // ',slip,normal_traction'
+            // trim(internal_variable(run%props)) // ',slip,normal_traction'
+        if (run%across%free()) names = names // ',normal_displacement,normal_velocity'
     end function series_columns
 
     !> A row of the time series. Of several blocks it shows the means.
-    pure function series_row(state) result(row)
+    pure function series_row(state, columns) result(row)
         type(slider_state), intent(in) :: state
-        real(dp) :: row(n_series)
+        integer, intent(in) :: columns   !! how many there are
+        real(dp) :: row(columns)
 
-        row = [state%time, state%drive, mean(state%x), mean(state%v), mean(state%a), &
+        row(:11) = [state%time, state%drive, mean(state%x), mean(state%v), mean(state%a), &
             mean(state%spring), mean(state%friction), mean(state%statev(:, statev_mu)), &
             mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip)), state%normal]
+        if (columns > 11) row(12:) = [state%statev(1, statev_u_n), state%v_n]
     end function series_row
 
     pure function mean(values)

@@ -61,7 +61,7 @@ contains
         character(len=:), allocatable :: row
         integer :: i
 
-        row = whole_text(piece) // ',' // full_row([this%velocity, this%normal, &
+        row = whole_text(piece) // ',' // full_row([this%velocity, pressure(this, result), &
             friction(result)]) // ',' // stability_cells(result)
         do i = 1, criticals
             row = row // ',' // full_row([critical(i)%closest_to(abs(this%value_of( &
@@ -80,6 +80,16 @@ contains
         if (result%verdict /= undecided) text = trim(verdicts(result%verdict)) // ',' &
             // full_row([result%growth, result%frequency])
     end function stability_cells
+
+    !> Pressure in steady sliding; what is applied, where there is none.
+    pure function pressure(this, result)
+        type(sliding_case), intent(in) :: this
+        type(stability), intent(in) :: result
+        real(dp) :: pressure   !! [F/L^2]
+
+        pressure = this%normal
+        if (result%contact%pressure > 0.0_dp) pressure = result%contact%pressure
+    end function pressure
 
     !> Traction over pressure in steady sliding.
     function friction(result) result(ratio)
@@ -117,7 +127,7 @@ contains
 
         if (pieces > 1) write (report, '(a, i0)') 'piece              ', piece
         write (report, '(2(a, es14.6), a)') 'steady sliding     ', this%velocity, &
-            ' [L/T] under ', this%normal, ' [F/L^2]'
+            ' [L/T] under ', pressure(this, result), ' [F/L^2]'
         if (len(result%problem) > 0) then
             write (report, '(2a)') 'stability          none: ', result%problem
             return

@@ -2,7 +2,7 @@
 module table_size
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use field_file, only : field_record_bytes
-    use run_rows, only : n_series
+    use run_rows, only : series_size
     use run_settings, only : settings
     implicit none
     private
@@ -26,7 +26,7 @@ contains
         else if (.not. run%adaptive) then
             rows = real(run%n_steps, dp) / run%interval
         end if
-        bytes = rows * number * n_series
+        bytes = rows * number * series_size(run)
         if (run%fields > 0 .and. .not. run%adaptive) bytes = bytes + real(run%n_steps, dp) &
             / run%fields * real(field_record_bytes(run%chain%n_blocks), dp)
     end function expected_bytes

@@ -8,8 +8,8 @@ module adaptive_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
-    use friction_mod, only : friction_message, friction_no_convergence, statev_dissipation, &
-        statev_mu, statev_r, statev_slip, statev_status
+    use friction_mod, only : friction_message, friction_no_convergence, prop_alpha_n, &
+        statev_dissipation, statev_mu, statev_r, statev_slip, statev_status, statev_u_n
     use law_facts, only : coefficient_error, coefficient_range, has_r, typical_coefficient
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
@@ -134,7 +134,7 @@ contains
             end = end_of_step(old%time, min(old%time + self%dt, event) - old%time, limit)
             call find_opening(self%drive, piece, 0.0_dp, old%normal <= 0.0_dp, old%time, end, &
                 kink, after)
-            if (matters(kink)) end = kink
+            if (matters(kink) .and. .not. self%system%across%free()) end = kink
             dt = end - old%time
             call self%try_twice(old, end, piece, report)
             self%stiffness = max(self%system%stiffness, report%stiffness)
@@ -219,6 +219,9 @@ contains
                 s%stiffness * abs(e%statev(:, statev_slip))))
             error = max(error, self%pressing * maxval(coefficient_error(s%props, &
                 self%ends(2)%statev, e%statev)))
+            if (s%across%free()) error = max(error, typical_coefficient(s%props) * s%area &
+                * s%props(prop_alpha_n) * max(abs(e%statev(1, statev_u_n)), abs(e%v_n) &
+                * sqrt(s%across%mass / (s%across%stiffness + s%area * s%props(prop_alpha_n)))))
         end associate
         error = error / self%tolerated
     end function error_of
@@ -237,8 +240,9 @@ contains
             new%time = finest_end%time
             new%drive = finest_end%drive
             new%normal = finest_end%normal
-            if (self%system%mass > 0.0_dp .and. self%stiffness * (new%time - old%time)**2 &
-                > self%system%mass) then
+            new%load = finest_end%load
+            if ((self%system%mass > 0.0_dp .and. self%stiffness * (new%time - old%time)**2 &
+                > self%system%mass) .or. opens_or_closes(self%system, old, self%ends)) then
                 call blend(self%ends, finest, new)
             else
                 call blend(self%ends, [-self%part, 1.0_dp + self%part], new)
@@ -259,9 +263,21 @@ contains
         new%statev(:, statev_slip) = max(old%statev(:, statev_slip), new%statev(:, statev_slip))
         new%statev(:, statev_dissipation) = max(old%statev(:, statev_dissipation), &
             new%statev(:, statev_dissipation))
-        new%spring = self%system%stiffness * (new%drive - new%x)
+        associate (u_n => new%statev(:, statev_u_n))
+            new%spring = self%system%pull(new%drive, new%x, u_n)
+            if (self%system%across%free()) new%normal = self%system%carried_pressure(u_n(1))
+        end associate
         call set_accelerations(self%system, new)
     end subroutine extrapolate
+
+    !> Does a block that moves across the interface leave the base or come back to it?
+    pure function opens_or_closes(system, old, ends) result(yes)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old, ends(2)
+        logical :: yes
+
+        yes = system%across%free() .and. any((ends%normal > 0.0_dp) .neqv. old%normal > 0.0_dp)
+    end function opens_or_closes
 
     !> When slip began or ended within the last step, unless next to its ends: friction has a kink
     !> there. In steps of Newmark's it counts if a block stuck or slipped differently since.

@@ -13,6 +13,7 @@ module chain_parts
     use run_settings, only : settings
     use slider_system, only : ends_fixed, ends_fixed_free, ends_free, ends_free_fixed, &
         ends_periodic, slider, slider_state
+    use two_way_steps, only : two_way_newmark
     use time_integrator, only : generalised_alpha, newmark
     !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
     implicit none
@@ -67,6 +68,8 @@ contains
 
         if (run%chain%n_blocks > most_at_once) then
             allocate (parted_chain :: method)
+        else if (run%across%free()) then
+            allocate (two_way_newmark :: method)
         else
             allocate (newmark :: method)
         end if

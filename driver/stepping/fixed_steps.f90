@@ -37,8 +37,9 @@ contains
         self%dt = run%dt
     end subroutine prepare
 
-    !> With a mass the step is the fixed one; without, a step that fails is taken in parts, because
-    !> the balance of forces may be followed in small steps where it cannot be found in a large one.
+    !> With a mass the step is the fixed one; without, or where a block moves across the interface,
+    !> a step that fails is taken in parts, because the balance of forces may be followed in small
+    !> steps where it cannot be found in a large one.
     subroutine step(self, old, new, report)
         class(fixed), intent(inout) :: self
         type(slider_state), intent(inout) :: old
@@ -60,7 +61,8 @@ contains
             if (report%status >= 0) call self%system%account(old, new)
             new%time = time
             call self%count_iterations(report%iterations)
-            if (report%status >= 0 .or. self%system%mass > 0.0_dp) exit
+            if (report%status >= 0) exit
+            if (self%system%mass > 0.0_dp .and. .not. self%system%across%free()) exit
             if (2 * self%parts > most_parts) exit
             self%parts = 2 * self%parts
             self%rejected = self%rejected + 1
