@@ -324,8 +324,8 @@ contains
         run%rigid_contact = contact == 'rigid'
         if (.not. run%rigid_contact) return
         if (.not. run%adaptive .or. run%newmark .or. run%chain%n_blocks > 1) call file%reject( &
-            group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma, ' &
-            // 'rho_infinity and normal_mass')
+            group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
+            // 'rho_infinity, that does not move across the interface (normal_mass)')
         if (.not. allocated(run%props)) return
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')
