@@ -8,6 +8,7 @@ module friction_law_choice
     use friction_law_constants, only : law_constant, positive
     use friction_rate_state_law, only : rate_state_law
     use friction_shear_cap, only : cap_constants, capped_law
+    use friction_slip_weakening_healing_law, only : slip_weakening_healing_law
     use friction_slip_weakening_law, only : slip_weakening_law
     use friction_static_kinetic_law, only : static_kinetic_law
     use friction_status, only : friction_bad_law, friction_bad_property
@@ -25,7 +26,8 @@ module friction_law_choice
     integer, parameter, public :: law_static_kinetic = 3
     integer, parameter, public :: law_rate_state = 4
     integer, parameter, public :: law_slip_weakening = 5
-    integer, parameter, public :: law_count = 5   !! they are numbered from 1 to this
+    integer, parameter, public :: law_slip_weakening_healing = 6
+    integer, parameter, public :: law_count = 6   !! they are numbered from 1 to this
 
     !> Material constants: places in `props`. The law's own ones follow, then the shear cap, then
     !> those of orthotropic friction.
@@ -46,6 +48,7 @@ module friction_law_choice
         type(static_kinetic_law) :: static_kinetic
         type(rate_state_law) :: rate_state
         type(slip_weakening_law) :: slip_weakening
+        type(slip_weakening_healing_law) :: slip_weakening_healing
         type(capped_law) :: capped
     end type law_storage
 
@@ -63,6 +66,7 @@ contains
         case (law_static_kinetic); found => storage%static_kinetic
         case (law_rate_state); found => storage%rate_state
         case (law_slip_weakening); found => storage%slip_weakening
+        case (law_slip_weakening_healing); found => storage%slip_weakening_healing
         case default; found => null()
         end select
     end subroutine find_law

@@ -12,7 +12,7 @@ module friction_law_constants
     !> largest number that is taken.
     real(wp), parameter :: positive = 2.0_wp**(-333)
 
-    integer, parameter, public :: name_length = 16, unit_length = 8, meaning_length = 64
+    integer, parameter, public :: name_length = 23, unit_length = 8, meaning_length = 64
     integer, parameter, public :: words_length = 64
 
     !> One constant. Places count within the same table.

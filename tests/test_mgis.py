@@ -31,6 +31,8 @@ LAWS = {
     'RateAndState': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction'],
                      [4, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4]),
     'SlipWeakening': (['StaticFriction', 'KineticFriction', 'CriticalSlip'], [5, 1000, 800, 0.45, 0.25, 1e-2]),
+    'SlipWeakeningHealing': (['StaticFriction', 'KineticFriction', 'CriticalSlip', 'HealingRate'],
+                             [6, 1000, 800, 0.45, 0.25, 1e-2, 1]),
 }
 PLANE = ['Axisymmetrical', 'PlaneStress', 'PlaneStrain', 'GeneralisedPlaneStrain']
 # pressed, sheared, reversed, held, lifted, closed, sheared: total gap, normal first

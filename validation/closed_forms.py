@@ -1,7 +1,7 @@
 """Each law against its closed forms, point by point through the library."""
 import matplotlib.pyplot as plot
 import numpy
-from library import COULOMB, RATE_AND_STATE, SLIP_WEAKENING, STATIC_KINETIC, SUBLOADING
+from library import COULOMB, RATE_AND_STATE, SLIP_WEAKENING, SLIP_WEAKENING_HEALING, STATIC_KINETIC, SUBLOADING
 from scipy.special import expi
 
 PRESSURE = 10.0
@@ -15,6 +15,7 @@ changes. Where the closed form is of a rigid contact the tangential spring is ma
     coulomb(library, report)
     static_kinetic(library, report)
     slip_weakening(library, report)
+    healing(library, report)
     rate_and_state_steady(library, report)
     rate_and_state_transient(library, report)
     subloading_rest_and_steady(library, report)
@@ -66,6 +67,27 @@ def slip_weakening(library, report):
                (mu_s - mu_k) * PRESSURE * d_c / 2, energy, 1e-6)
     expected = PRESSURE * numpy.maximum(mu_k, mu_s - (mu_s - mu_k) * slip / d_c)
     report.curve('slip-weakening: traction over the slip', 'laws.md 5', expected, traction, 1e-12)
+
+
+def healing(library, report):
+    mu_s, mu_k, d_c, xi = 0.5, 0.3, 0.02, 2.0
+
+    def fresh():
+        return library.point(SLIP_WEAKENING_HEALING, 1e3, 1e9, mu_s, mu_k, d_c, xi).pressed(PRESSURE)
+
+    for share in (0.01, 0.5, 3.0):   # of the slip rate from which on friction stays kinetic
+        rate = share * xi * d_c
+        report.row(f'slip-weakening that heals: steady friction at v = {share:g} xi d_c', 'laws.md 6, `D = v/xi` up to `d_c`',
+                   mu_s - (mu_s - mu_k) * min(1, share), slide(fresh(), rate, 0.05 / xi, 600) / PRESSURE, 1e-9)
+    times = numpy.linspace(0.05, 3.0, 60)
+    computed = []
+    for time in times:   # slid far, held, and then pulled until it slides, in next to no time
+        point = fresh()
+        slide(point, 100 * d_c, 0.01, 5)
+        point.shear(0.0, time)
+        computed.append(point.shear(1e-8, 1e-12) / PRESSURE)
+    report.curve('slip-weakening that heals: friction at the end of a hold', '`mu_s - (mu_s - mu_k) exp(-xi t)`',
+                 mu_s - (mu_s - mu_k) * numpy.exp(-xi * times), numpy.array(computed), 1e-6)
 
 
 def rate_and_state(library, evolution, alpha_t=1e3, theta_0=None):

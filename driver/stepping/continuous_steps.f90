@@ -380,12 +380,18 @@ contains
         real(dp), intent(in) :: pressure, pressure_rate   !! [F/L^2], [F/L^2/T]
         logical :: slides
         real(dp) :: strength, growth
+        type(law_state) :: healing
 
         slides = .true.
         if (self%equations%rigid) return
         strength = self%equations%strength(self%y, pressure)
         growth = 0.0_dp
-        if (strength < self%equations%surface%tau_max) growth = strength / pressure * pressure_rate
+        if (strength < self%equations%surface%tau_max) then
+            healing = self%equations%surface%law%state_rates(self%equations%law_state_of(self%y, &
+                pressure), load_rates(strength, 0.0_dp, self%equations%alpha, pressure, &
+                pressure_rate, .false.), 0.0_dp)
+            growth = strength / pressure * pressure_rate + healing%mu * pressure
+        end if
         slides = self%equations%alpha * self%equations%sense_of(self%y(elastic)) &
             * self%first(elastic) > growth
     end function would_slide

@@ -200,8 +200,8 @@ contains
             '  &friction  law (''subloading''), alpha_n, alpha_t [F/L^3], mu_s, mu_k [-],', &
             '             kappa [1/L], xi [1/T], m [1/L], mu_0 (mu_s) [-];', &
             '             scheme, u_of_r, tau_max [F/L^2], mu_ratio, direction;', &
-            '             laws coulomb, static_kinetic, rate_and_state, slip_weakening have keys', &
-            '             of their own', &
+            '             laws coulomb, static_kinetic, rate_and_state, slip_weakening,', &
+            '             slip_weakening_healing have keys of their own', &
             '  &slider    mass [F T^2/L], stiffness [F/L], damping (0) [F T/L], area (1) [L^2],', &
             '             normal_traction [F/L^2]', &
             '  &drive     velocity [L/T], duration [T], normal (normal_traction) [F/L^2]:', &

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _library
 
-__all__ = ['Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'StaticKinetic', 'Subloading']
+__all__ = ['Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic', 'Subloading']
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Law:
@@ -151,3 +151,19 @@ class SlipWeakening(Law):
 
     number = 5
     name = 'slip_weakening'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SlipWeakeningHealing(Law):
+    """mu falls with slip, linearly, from mu_s to mu_k, and recovers with time, at rest from the moment slip ends.
+
+    mu_s, mu_k: friction coefficients [-]; d_c: slip over which friction falls [L]; xi: rate of the recovery [1/T].
+    """
+
+    mu_s: float
+    mu_k: float
+    d_c: float
+    xi: float
+
+    number = 6
+    name = 'slip_weakening_healing'

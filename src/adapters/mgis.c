@@ -288,3 +288,4 @@ LAW(StickSlipStaticKinetic, 3, 3, "StaticFriction", "KineticFriction", "Decay")
 LAW(StickSlipRateAndState, 4, 5, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
     "ReferenceFriction")
 LAW(StickSlipSlipWeakening, 5, 3, "StaticFriction", "KineticFriction", "CriticalSlip")
+LAW(StickSlipSlipWeakeningHealing, 6, 4, "StaticFriction", "KineticFriction", "CriticalSlip", "HealingRate")

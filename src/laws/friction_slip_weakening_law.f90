@@ -40,7 +40,7 @@ module friction_slip_weakening_law
     end type slip_weakening_law
 
     !> Its own constants; in `props` they stand from place 4 on.
-    type(law_constant), parameter :: table(3) = [ &
+    type(law_constant), parameter, public :: slip_weakening_constants(3) = [ &
         law_constant('mu_s', '-', 'friction coefficient of a fresh surface', lower=0.0_wp, &
         not_below=2), &
         law_constant('mu_k', '-', 'friction coefficient after the slip d_c', lower=0.0_wp), &
@@ -54,12 +54,12 @@ contains
         real(wp), intent(in) :: constants(n)
         integer, intent(out) :: n_own, status
 
-        n_own = size(table)
+        n_own = size(slip_weakening_constants)
         status = friction_bad_size
         if (n < 3) return
         status = friction_bad_property
-        if (any(constants(:3) < table(:3)%lower)) return
-        if (constants(1) < constants(table(1)%not_below)) return
+        if (any(constants(:3) < slip_weakening_constants(:3)%lower)) return
+        if (constants(1) < constants(slip_weakening_constants(1)%not_below)) return
         self%mu_s = constants(1)
         self%mu_k = constants(2)
         self%d_c = constants(3)
@@ -75,8 +75,8 @@ contains
     pure function constants()
         type(constant_table) :: constants
 
-        constants%n = size(table)
-        constants%of(:size(table)) = table
+        constants%n = size(slip_weakening_constants)
+        constants%of(:size(slip_weakening_constants)) = slip_weakening_constants
     end function constants
 
     pure function typical_coefficient(self) result(mu)

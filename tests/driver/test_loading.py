@@ -340,8 +340,25 @@ class ContinuousTime(Columns):
             work, unbalanced = self.summary(text.replace('damping = 0.01', 'damping = 1'), 'work of the drive', 'unbalanced')
             self.assertLess(abs(unbalanced), 1e-6 * work)
 
+    def test_the_stress_drop_grows_with_the_time_between_events(self):
+        # d_c next to nothing: half a swing, damped, against mu_k p; then rest until K V T is the drop again, the strength being
+        # mu = mu_s - (mu_s - mu_k) exp(-xi T)
+        damping = 2e-3
+        share = damping / (2 * math.sqrt(1e-3 * 1))
+        swing = 1 + math.exp(-math.pi * share / math.sqrt(1 - share**2))
+        for contact, velocity in (('rigid', 0.1), ('rigid', 0.03), ('elastic', 0.1)):
+            text = (f"&friction law='slip_weakening_healing', contact='{contact}', alpha_n=1, alpha_t=20, mu_s=0.6, mu_k=0.4, d_c=2e-4, "
+                    f'xi=0.05 /\n&slider mass=1e-3, stiffness=1, damping={damping}, area=1000, normal_traction=0.01 /\n'
+                    f'&drive velocity={velocity} /\n&time t_end={25 / velocity}, rtol=1e-7 /\n&output every=1 /\n')
+            self.summary(text, 'steps')
+            events, period = self.events(), 30.0
+            for _ in range(200):
+                period = swing * 10 * 0.2 * -math.expm1(-0.05 * period) / velocity
+            self.assertGreater(len(events), 4)
+            self.assertAlmostEqual(events[-1]['recurrence_time'], period, delta=0.01 * period)
+
     def test_a_cap_under_every_law_is_never_passed(self):
-        for law in ('coulomb', 'slip_weakening', 'static_kinetic', 'rate_and_state'):
+        for law in ('coulomb', 'slip_weakening', 'slip_weakening_healing', 'static_kinetic', 'rate_and_state'):
             text = law_namelist(law, tau_max='1.5').replace('dt = 1e-3', 'rtol = 1e-7').replace('t_end = 0.1', 't_end = 4')
             run = self.run_columns(text)
             self.assertLess(max(run['friction_force']), 1.5 * (1 + 1e-9), law)

@@ -28,6 +28,7 @@ LAWS = {
     'static_kinetic': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.1'},
     'rate_and_state': {'a': '0.01', 'b': '0.015', 'd_c': '0.01', 'v0': '0.001', 'f0': '0.6'},
     'slip_weakening': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.05'},
+    'slip_weakening_healing': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.05', 'xi': '10'},
 }
 
 
@@ -235,6 +236,16 @@ class Laws(Program):
         for row in self.slide('slip_weakening')[0]:
             self.assertAlmostEqual(row['mu'], max(0.2, 0.4 - 0.2 * row['slip'] / 0.05), delta=1e-9)
 
+    def test_slip_weakening_friction_heals_with_time(self):
+        healed = 0
+        for old, new in self.slide('slip_weakening_healing')[1]:
+            y = 10 * (new['time'] - old['time'])
+            slip = new['slip'] - old['slip']
+            self.assertAlmostEqual(new['D'], min(0.05, old['D'] * math.exp(-y) - slip * math.expm1(-y) / y), delta=1e-12)
+            self.assertAlmostEqual(new['mu'], 0.4 - 0.2 * new['D'] / 0.05, delta=1e-9)
+            healed += new['D'] < old['D']
+        self.assertGreater(healed, 10)
+
     def test_rate_and_state_friction_depends_on_the_slip_rate_and_its_state(self):
         for evolution in ('ageing', 'slip'):
             for old, new in self.slide('rate_and_state', evolution=f"'{evolution}'")[1]:
@@ -287,7 +298,7 @@ class Laws(Program):
 
     def test_constants_of_another_law_are_unknown_keys(self):
         for law in LAWS:
-            self.refused(law_namelist(law, xi='1'), "&friction xi: unknown key; it belongs to the law 'subloading'")
+            self.refused(law_namelist(law, kappa='1'), "&friction kappa: unknown key; it belongs to the law 'subloading'")
         self.refused(namelist({('friction', 'mu'): '0.3', ('friction', 'evolution'): "'slip'"}),
                      "&friction mu: unknown key; it belongs to the law 'coulomb'",
                      "&friction evolution: unknown key; it belongs to the law 'rate_and_state'")
@@ -300,6 +311,7 @@ class Laws(Program):
             without = namelist(without=[('friction', None)]) + f"&friction law = '{law}' /\n"
             self.refused(without, *(f'&friction {key}: is missing' for key in constants))
         self.refused(law_namelist('slip_weakening', mu_s='0.1'), '&friction mu_s = 0.1: must be >= mu_k')
+        self.refused(law_namelist('slip_weakening_healing', xi='-1'), '&friction xi = -1: must be >= 0')
         self.refused(law_namelist('rate_and_state', evolution="'growing'", theta_0='0'),
                      "&friction evolution = 'growing': must be one of 'ageing', 'slip'",
                      '&friction theta_0 = 0: must be > 0')

@@ -13,6 +13,8 @@ LAWS = {
     'static_kinetic': stickslip.laws.StaticKinetic(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=2),
     'rate_and_state': stickslip.laws.RateAndState(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6),
     'slip_weakening': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01),
+    'slip_weakening_healing': stickslip.laws.SlipWeakeningHealing(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01,
+                                                                  xi=2),
 }
 
 

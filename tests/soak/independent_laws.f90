@@ -7,12 +7,12 @@ module independent_laws
     implicit none
     private
 
-    public :: evolution_misfits, is_sheared, load_case, material, pulled, read_increment, &
-        read_material, rested_strength, resistance_of
+    public :: evolution_misfits, healed_slip, is_sheared, load_case, material, mean_decay, pulled, &
+        read_increment, read_material, rested_strength, resistance_of
 
     !> What `props` says.
     type :: material
-        integer :: law           !! 1 to 5
+        integer :: law           !! 1 to 6
         real(qp) :: alpha_n, alpha_t
         real(qp) :: own(7)       !! the law's own constants
         real(qp) :: mu_0         !! of a virgin point
@@ -41,7 +41,7 @@ contains
     subroutine read_material(props, mat)
         real(dp), intent(in) :: props(:)
         type(material), intent(out) :: mat
-        integer, parameter :: places(5) = [12, 5, 7, 11, 7]   ! of the cap
+        integer, parameter :: places(6) = [12, 5, 7, 11, 7, 8]   ! of the cap
         integer :: n_own, cap
 
         mat%law = nint(props(1))
@@ -174,10 +174,24 @@ contains
         case (5)
             mu = max(mat%own(2), mat%own(1) - (mat%own(1) - mat%own(2)) * ((this%r + s) &
                 / mat%own(3)))
+        case (6)
+            mu = mat%own(1) - (mat%own(1) - mat%own(2)) * (healed_slip(mat, this, s) / mat%own(3))
         case default
             mu = 0.0_qp
         end select
     end function mu_after
+
+    !> D of law 6 after the slip s.
+    function healed_slip(mat, this, s) result(d)
+        type(material), intent(in) :: mat
+        type(load_case), intent(in) :: this
+        real(qp), intent(in) :: s
+        real(qp) :: d
+        real(qp) :: x
+
+        x = mat%own(4) * this%dt
+        d = min(min(this%r, mat%own(3)) * exp(-x) + s * mean_decay(x), mat%own(3))
+    end function healed_slip
 
     !> (1 - e^-x)/x
     function mean_decay(x) result(mean)
@@ -228,6 +242,9 @@ contains
             misfit(1) = mu - viscous(mat, this, s, x, scale(1))
         case (5)
             misfit(2) = r - (this%r + s)
+            scale(2) = r
+        case (6)
+            misfit(2) = r - healed_slip(mat, this, s)
             scale(2) = r
         case default   ! nothing evolves
         end select

@@ -2,8 +2,9 @@
 module path_checks
     use, intrinsic :: iso_fortran_env, only : dp => real64, qp => real128
     use friction_mod, only : friction_update
-    use independent_laws, only : evolution_misfits, is_sheared, load_case, material, pulled, &
-        read_increment, read_material, resistance_of, rested_strength
+    use independent_laws, only : evolution_misfits, healed_slip, is_sheared, load_case, &
+        material, mean_decay, pulled, read_increment, read_material, resistance_of, &
+        rested_strength
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
@@ -328,7 +329,7 @@ contains
 
     end function check_first_root
 
-    !> From no slip to all of it: every decade of it, evenly, and around the kink of law 5.
+    !> From no slip to all of it: every decade of it, evenly, and around the kink of laws 5 and 6.
     subroutine fill_grid(mat, this, x)
         type(material), intent(in) :: mat
         type(load_case), intent(in) :: this
@@ -345,8 +346,10 @@ contains
                 x(i) = real(i - n / 2, qp) / (n - n / 2)
             end if
         end do
-        if (mat%law == 5) then
+        if (mat%law >= 5) then
             kink = (mat%own(3) - this%r) / norm2(this%q)
+            if (mat%law == 6) kink = (mat%own(3) - healed_slip(mat, this, 0.0_qp)) &
+                / (norm2(this%q) * mean_decay(mat%own(4) * this%dt))
             if (kink > 0.0_qp .and. kink < 1.0_qp) x(n / 2 + 1:n / 2 + 5) = kink &
                 * [0.99_qp, 0.999999_qp, 1.0_qp, 1.000001_qp, 1.01_qp]
         end if

@@ -44,7 +44,7 @@ contains
         this%extreme = chance(0.05_dp)
         this%half = 0.5_dp * nint(draw(0.5_dp, 7.5_dp))
         half = this%half
-        law = min(5, 1 + int(draw(0.0_dp, 8.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
+        law = min(6, 1 + int(draw(0.0_dp, 12.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
         mu = draw(0.05_dp, 1.5_dp)
         this%pressure = 10.0_dp * decade(half)
         own = 0.0_dp
@@ -74,7 +74,9 @@ contains
             n = 7
         case default
             own(3) = this%reach * decade(half)
-            n = 3
+            own(4) = decade(half) / this%time
+            if (chance(0.1_dp)) own(4) = 0.0_dp
+            n = merge(3, 4, law == 5)
         end select
         this%needs_time = law == 3 .or. law == 4
         call draw_options(this, own, n)
@@ -215,7 +217,7 @@ contains
         if (nint(this%props(1)) == 1) this%statev(i, 6) = r
         if (nint(this%props(1)) == 4) this%statev(i, 6) = min(1.0e100_dp, this%props(6) &
             / this%props(7) * decade(min(this%half, 20.0_dp)))
-        if (nint(this%props(1)) == 5) then
+        if (nint(this%props(1)) >= 5) then
             this%statev(i, 6) = r * this%props(6)
             if (chance(0.2_dp)) this%statev(i, 6) = this%props(6) * draw(0.9_dp, 3.0_dp)
         end if

@@ -244,7 +244,7 @@ contains
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
         if (nint(t%props(1)) == 4) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
         inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
-        if (nint(t%props(1)) == 5) inner(2) = max(inner(2), length)   ! a slip
+        if (nint(t%props(1)) >= 5) inner(2) = max(inner(2), length)   ! a slip
         apart = max(apart, maxval(abs(state(5:6) - t%new(5:6)) / inner) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         apart = max(apart, abs(state(8) - t%new(8)) / max(force * length + t%new(8), &

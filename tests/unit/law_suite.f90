@@ -4,7 +4,7 @@ module law_suite
     use, intrinsic :: iso_fortran_env, only : dp => real64, real128
     use draws, only : draw
     use friction_mod, only : friction_update, law_coulomb, law_rate_state, law_slip_weakening, &
-        law_static_kinetic, law_subloading
+        law_slip_weakening_healing, law_static_kinetic, law_subloading
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
@@ -31,10 +31,11 @@ module law_suite
     real(dp), parameter :: static_kinetic(3) = [mu, 0.2_dp, 0.1_dp]
     real(dp), parameter :: rate_state(5) = [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, mu]
     real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
+    real(dp), parameter :: healing(4) = [slip_weakening, 1.0e2_dp]
     real(dp), parameter :: unused(most_own) = 0.0_dp
     real(dp), parameter :: associated(2) = [0.6_dp, 0.0_dp], radial(2) = [0.6_dp, 1.0_dp]
 
-    type(law_case), parameter :: laws(25) = [ &
+    type(law_case), parameter :: laws(28) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
         [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
@@ -81,7 +82,13 @@ module law_suite
         law_case('rate-and-state, associated', law_rate_state, 10, [rate_state, 0.0_dp, theta_0, &
         0.0_dp, associated, unused(11:)], 'mmddm-d-o-', .true.), &
         law_case('slip-weakening, associated', law_slip_weakening, 6, [slip_weakening, 0.0_dp, &
-        associated, unused(7:)], 'mmd-o-', .false.)]
+        associated, unused(7:)], 'mmd-o-', .false.), &
+        law_case('healing', law_slip_weakening_healing, 4, [healing, unused(5:)], 'mmdd', &
+        .false.), &
+        law_case('healing, capped', law_slip_weakening_healing, 5, [healing, tau_max, &
+        unused(6:)], 'mmddd', .false.), &
+        law_case('healing, associated', law_slip_weakening_healing, 7, [healing, 0.0_dp, &
+        associated, unused(8:)], 'mmdd-o-', .false.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point
