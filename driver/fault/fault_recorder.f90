@@ -4,6 +4,7 @@ module fault_recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_events, only : event_watch, fault_event
     use fault_problem, only : fault, fault_state
+    use number_text, only : full_row
     use processes, only : team
     use text_file, only : output_file
     implicit none
@@ -163,9 +164,10 @@ contains
         flat = reshape(values, [size(flat)])
         if (size(flat) > 0) call together%largest_of_each(flat)
         if (.not. self%writes) return
-        call self%global%write_line(row_of([state%time, log10_of(watch%largest_rate), moment_rate]))
+        call self%global%write_line(full_row([state%time, log10_of(watch%largest_rate), &
+            moment_rate]))
         do i = 1, size(self%cells)
-            call self%stations(i)%write_line(row_of([state%time, flat(4 * i - 3:4 * i)]))
+            call self%stations(i)%write_line(full_row([state%time, flat(4 * i - 3:4 * i)]))
         end do
     end subroutine write_rows
 
@@ -183,7 +185,7 @@ contains
 
         if (.not. self%writes) return
         write (number, '(i0)') event%first_cell
-        call self%events%write_line(row_of([event%onset, event%duration, event%peak_rate, &
+        call self%events%write_line(full_row([event%onset, event%duration, event%peak_rate, &
             event%largest_slip, event%mean_slip, event%potency]) // ',' // trim(number))
     end subroutine write_event
 
@@ -211,7 +213,7 @@ contains
             own = (1.0_dp - u) * log10_of(self%rate_before) + u * log10_of(state%rate)
             call together%gather(own, here%part%counts, rate)
             do k = 1, here%plan%nz, stride
-                if (self%writes) call self%contours%write_line(row_of([self%next_contour, &
+                if (self%writes) call self%contours%write_line(full_row([self%next_contour, &
                     merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k), rate(k)]))
             end do
             if (self%writes) call self%contours%write_line('')
@@ -220,23 +222,6 @@ contains
         if (ended) self%next_contour = here%plan%contours(1) * (1 + aint(state%time &
             / here%plan%contours(1)))
     end subroutine write_contours
-
-    !> Numbers with all their digits.
-    pure function row_of(numbers) result(text)
-        real(dp), intent(in) :: numbers(:)
-        character(len=:), allocatable :: text
-        character(len=25 * size(numbers)) :: buffer
-        integer :: i, n
-
-        write (buffer, '(*(es24.16e3, :, ","))') numbers
-        n = 0
-        do i = 1, len(buffer)
-            if (buffer(i:i) == ' ') cycle
-            n = n + 1
-            buffer(n:n) = buffer(i:i)
-        end do
-        text = buffer(:n)
-    end function row_of
 
     subroutine flush_all(self)
         class(recorder), intent(inout) :: self
