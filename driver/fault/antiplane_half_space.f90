@@ -3,15 +3,17 @@
 !>
 !>     K(d) = G/(2 pi D) [1/(d - 1/2) - 1/(d + 1/2)]
 !>
-!> and its mirror image above the surface does the same. Slip is thus even about the surface, and
-!> the sum over all cells is a product of cosine transforms (DCT-II and its inverse) of twice the
-!> length, the second half without slip. A fault has few such cells: each process transforms all.
+!> and its mirror image above the surface does the same: cell j acts on cell i at the distances
+!> i - j and i + j - 1. The first sum over all cells is a convolution of slip, the second one its
+!> correlation with K. Both take one Fourier transform of the real slip, padded to twice its length:
+!> with S that of slip, the traction is that of `direct` S + `image` conjg(S). A fault has few such
+!> cells: each process transforms all.
 module antiplane_half_space
-    use, intrinsic :: iso_c_binding, only : c_int, c_ptr
+    use, intrinsic :: iso_c_binding, only : c_double_complex, c_int, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use fault_elasticity, only : elasticity, slab
-    use fftw, only : fftw_destroy_plan, fftw_estimate, fftw_execute_r2r, fftw_plan_r2r_1d, &
-        fftw_redft00, fftw_redft01, fftw_redft10
+    use fault_elasticity, only : elasticity, good_length, slab
+    use fftw, only : fftw_destroy_plan, fftw_estimate, fftw_execute_dft_c2r, &
+        fftw_execute_dft_r2c, fftw_plan_dft_c2r_1d, fftw_plan_dft_r2c_1d
     use processes, only : team
     implicit none
     private
@@ -24,8 +26,10 @@ module antiplane_half_space
         private
         type(slab) :: part
         type(c_ptr) :: forth, back
-        real(dp), allocatable :: multiplier(:)            !! K in wave numbers
-        real(dp), allocatable :: depth(:), wave(:)        !! before and behind a transform
+        real(dp), allocatable :: direct(:)                      !! K in wave numbers
+        complex(c_double_complex), allocatable :: image(:)      !! the same of the images
+        real(dp), allocatable :: slip(:), traction(:)           !! padded: zero beyond the cells
+        complex(c_double_complex), allocatable :: waves(:)
     contains
         procedure :: create
         procedure :: apply
@@ -48,23 +52,29 @@ contains
         class(half_space), intent(inout) :: self
         type(slab), intent(in) :: part
         real(dp), intent(in) :: shear_modulus, height
-        type(c_ptr) :: plan
-        real(dp), allocatable :: distance(:), wave(:)
-        integer :: n, d
+        integer :: n, length, d
 
         self%part = part
         self%self_stiffness = -antiplane_kernel(shear_modulus, height, 0)
-        n = 2 * part%nz
-        allocate (self%depth(n), self%wave(n), distance(n + 1), wave(n + 1))
-        self%forth = fftw_plan_r2r_1d(int(n, c_int), self%depth, self%wave, fftw_redft10, &
+        n = part%nz
+        length = good_length(2 * n)
+        allocate (self%slip(length), self%traction(length), self%waves(length / 2 + 1))
+        self%forth = fftw_plan_dft_r2c_1d(int(length, c_int), self%slip, self%waves, fftw_estimate)
+        self%back = fftw_plan_dft_c2r_1d(int(length, c_int), self%waves, self%traction, &
             fftw_estimate)
-        self%back = fftw_plan_r2r_1d(int(n, c_int), self%wave, self%depth, fftw_redft01, &
-            fftw_estimate)
-        plan = fftw_plan_r2r_1d(int(n + 1, c_int), distance, wave, fftw_redft00, fftw_estimate)
-        distance = [(antiplane_kernel(shear_modulus, height, d), d = 0, n)]
-        call fftw_execute_r2r(plan, distance, wave)
-        call fftw_destroy_plan(plan)
-        self%multiplier = wave(:n) / (2 * n)
+        self%traction = 0.0_dp
+        do d = 0, n - 1
+            self%traction(1 + d) = antiplane_kernel(shear_modulus, height, d) / length
+            if (d > 0) self%traction(length + 1 - d) = self%traction(1 + d)
+        end do
+        call fftw_execute_dft_r2c(self%forth, self%traction, self%waves)
+        self%direct = real(self%waves, dp)
+        self%traction = 0.0_dp
+        self%traction(:2 * n - 1) = [(antiplane_kernel(shear_modulus, height, d) / length, &
+            d = 1, 2 * n - 1)]
+        call fftw_execute_dft_r2c(self%forth, self%traction, self%waves)
+        self%image = self%waves
+        self%slip = 0.0_dp
     end subroutine create
 
     subroutine apply(self, together, slip, traction)
@@ -72,16 +82,31 @@ contains
         type(team), intent(in) :: together
         real(dp), intent(in) :: slip(:)
         real(dp), intent(out) :: traction(:)
-        integer :: n
 
-        n = self%part%nz
-        call together%gather(slip, self%part%counts, self%depth(:n))
-        self%depth(n + 1:) = 0.0_dp
-        call fftw_execute_r2r(self%forth, self%depth, self%wave)
-        self%wave = self%wave * self%multiplier
-        call fftw_execute_r2r(self%back, self%wave, self%depth)
-        traction = self%depth(self%part%first:self%part%first + self%part%rows - 1)
+        call together%gather(slip, self%part%counts, self%slip(:self%part%nz))
+        call fftw_execute_dft_r2c(self%forth, self%slip, self%waves)
+        call multiply(size(self%waves), self%direct, self%image, self%waves)
+        call fftw_execute_dft_c2r(self%back, self%waves, self%traction)
+        traction = self%traction(self%part%first:self%part%first + self%part%rows - 1)
     end subroutine apply
+
+    pure subroutine multiply(n, direct, image, waves)
+        integer, intent(in) :: n
+        real(dp), intent(in) :: direct(n)
+        complex(c_double_complex), intent(in) :: image(n)
+        complex(c_double_complex), intent(inout) :: waves(n)
+        real(dp) :: re, im, image_re, image_im
+        integer :: k
+
+        do k = 1, n   ! in parts: a product of complex numbers minds infinite ones
+            re = real(waves(k), dp)
+            im = aimag(waves(k))
+            image_re = real(image(k), dp)
+            image_im = aimag(image(k))
+            waves(k) = cmplx((direct(k) + image_re) * re + image_im * im, &
+                (direct(k) - image_re) * im + image_im * re, c_double_complex)
+        end do
+    end subroutine multiply
 
     subroutine free(self)
         class(half_space), intent(inout) :: self

@@ -7,7 +7,7 @@ module fault_elasticity
     implicit none
     private
 
-    public :: elasticity, slab
+    public :: elasticity, good_length, slab
 
     !> Which rows of cells a process has.
     type :: slab
@@ -47,6 +47,27 @@ module fault_elasticity
     end interface
 
 contains
+
+    !> The least even length from `n` on that Fourier transforms take fast: no prime factor
+    !> beyond 7.
+    pure function good_length(n) result(length)
+        integer, intent(in) :: n
+        integer :: length
+        integer, parameter :: primes(4) = [2, 3, 5, 7]
+        integer :: rest, i
+
+        length = n + modulo(n, 2)
+        do
+            rest = length
+            do i = 1, size(primes)
+                do while (modulo(rest, primes(i)) == 0)
+                    rest = rest / primes(i)
+                end do
+            end do
+            if (rest == 1) return
+            length = length + 2
+        end do
+    end function good_length
 
     !> Rows in blocks of one length but for the last ones, as FFTW's transposes want them.
     subroutine divide(self, nx, nz, together)

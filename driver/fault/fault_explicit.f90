@@ -33,14 +33,26 @@ module fault_explicit
     real(dp), parameter :: error_weight(stages) = [71.0_dp / 57600.0_dp, 0.0_dp, &
         -71.0_dp / 16695.0_dp, 71.0_dp / 1920.0_dp, -17253.0_dp / 339200.0_dp, 22.0_dp / 525.0_dp, &
         -1.0_dp / 40.0_dp]
-    integer, parameter :: block = 512   !! cells whose stages stay in cache
+    integer, parameter :: block_size = 512   !! cells whose rates stay in cache
+
+    !> Cells that are treated one after the other, all of an evaluation at once.
+    type :: cell_block
+        integer :: first = 1, last = 0
+        integer :: set = 0    !! of constants
+    end type cell_block
+
+    !> Constants of friction of a block's cells; blocks with the same ones share them.
+    type :: constant_set
+        real(dp), allocatable :: props(:, :)    !! cell of the block, constant
+    end type constant_set
 
     type, extends(stepper) :: explicit_steps
         private
+        type(cell_block), allocatable :: blocks(:)
+        type(constant_set), allocatable :: sets(:)
         real(dp), allocatable :: slip_rate(:, :), memory_rate(:, :)   !! cell, stage
-        real(dp), allocatable :: slip(:), memory(:)                   !! of a stage
-        real(dp), allocatable :: traction(:), theta(:), theta_rate(:)
-        integer, allocatable :: status(:)
+        real(dp), allocatable :: slip(:), deficit(:), memory(:)       !! of a stage
+        real(dp), allocatable :: traction(:)   !! of a stage, from the slip deficit alone
         integer :: first_stage = 1, last_stage = stages    !! places of the rates: they swap
     contains
         procedure :: start => start_explicit
@@ -99,20 +111,57 @@ contains
         type(fault_state), intent(inout) :: state
         logical, intent(out) :: sound
 
+        integer :: i
+
+        call divide(self, here)
         allocate (self%slip_rate(here%n, stages), self%memory_rate(here%n, stages), &
-            self%slip(here%n), self%memory(here%n), self%traction(here%n), self%theta(here%n), &
-            self%theta_rate(here%n), self%status(here%n))
-        self%slip = state%slip
+            self%slip(here%n), self%deficit(here%n), self%memory(here%n), self%traction(here%n))
         self%memory = state%memory
-        call self%rates(here, together, state%time, 1, sound)
+        self%deficit = state%slip - here%plan%plate_rate * state%time
+        call here%surroundings%apply(together, self%deficit, self%traction)
+        sound = .true.
+        do i = 1, size(self%blocks)
+            call self%rates(here, self%blocks(i), 1, sound)
+        end do
         sound = .not. together%any_of(.not. sound)
         if (.not. sound) return
-        state%rate = self%slip_rate(:, 1)
-        state%traction = self%traction - here%damping * state%rate
+        call settle(self, here, 1, state)
         if (state%dt > 0.0_dp) return
         state%dt = 1.0e-2_dp / together%largest(max(maxval(abs(state%rate) / here%slip_scale), &
             maxval(abs(self%memory_rate(:, 1))), tiny(1.0_dp)))
     end subroutine begin
+
+    !> Blocks of cells. The constants move there: a block's must be an array by themselves.
+    subroutine divide(self, here)
+        type(explicit_steps), intent(inout) :: self
+        type(fault), intent(inout) :: here
+        type(constant_set), allocatable :: sets(:)
+        integer :: i, used
+        logical :: same
+
+        allocate (self%blocks((here%n + block_size - 1) / block_size))
+        allocate (sets(size(self%blocks)))
+        used = 0
+        do i = 1, size(self%blocks)
+            associate (block => self%blocks(i))
+                block%first = (i - 1) * block_size + 1
+                block%last = min(i * block_size, here%n)
+                same = used > 0 .and. block%last - block%first + 1 == block_size
+                if (same) same = all(abs(here%props(block%first:block%last, :) &
+                    - sets(used)%props) <= 0.0_dp)
+                if (.not. same) then
+                    used = used + 1
+                    sets(used)%props = here%props(block%first:block%last, :)
+                end if
+                block%set = used
+            end associate
+        end do
+        allocate (self%sets(used))
+        do i = 1, used
+            call move_alloc(sets(i)%props, self%sets(i)%props)
+        end do
+        deallocate (here%props)
+    end subroutine divide
 
     !> One step of `state%dt` or less, not beyond the end of the run. Not sound: no step is short
     !> enough.
@@ -144,16 +193,36 @@ contains
         state%time = state%time + dt
         if (dt >= here%plan%t_end - (state%time - dt)) state%time = here%plan%t_end
         state%steps = state%steps + 1
-        state%slip = self%slip
-        state%memory = self%memory
-        state%rate = self%slip_rate(:, self%last_stage)
-        state%traction = self%traction - here%damping * state%rate
+        call swap_arrays(state%slip, self%slip)
+        call swap_arrays(state%memory, self%memory)
+        call settle(self, here, self%last_stage, state)
         swap = self%first_stage   ! the last stage of a step is the first of the next
         self%first_stage = self%last_stage
         self%last_stage = swap
     end subroutine step
 
-    !> All stages; the error is huge where one of them is not sound.
+    pure subroutine swap_arrays(a, b)
+        real(dp), allocatable, intent(inout) :: a(:), b(:)
+        real(dp), allocatable :: kept(:)
+
+        call move_alloc(a, kept)
+        call move_alloc(b, a)
+        call move_alloc(kept, b)
+    end subroutine swap_arrays
+
+    !> Slip rates and tractions of the state, from the evaluation that was the last.
+    subroutine settle(self, here, k, state)
+        type(explicit_steps), intent(in) :: self
+        type(fault), intent(in) :: here
+        integer, intent(in) :: k   !! place of the rates
+        type(fault_state), intent(inout) :: state
+
+        state%rate = self%slip_rate(:, k)
+        state%traction = self%traction + here%prestress - here%damping * state%rate
+    end subroutine settle
+
+    !> All stages. A stage that is not sound counts as a huge error at the end: processes that are
+    !> well go on with those that are not, and need not ask each other in each stage.
     subroutine try_step(self, here, together, time, dt, state, error)
         class(explicit_steps), intent(inout) :: self
         type(fault), intent(inout) :: here
@@ -162,15 +231,25 @@ contains
         type(fault_state), intent(in) :: state
         real(dp), intent(out) :: error
         logical :: sound
-        integer :: stage
+        integer :: stage, i
 
-        error = huge(error)
-        do stage = 2, stages
-            call self%to_stage(stage, dt, state)
-            call self%rates(here, together, time + node(stage) * dt, place(self, stage), sound)
-            if (together%any_of(.not. sound)) return
+        sound = .true.
+        error = 0.0_dp
+        do i = 1, size(self%blocks)
+            call self%to_stage(here, self%blocks(i), 2, time, dt, state)
         end do
-        error = self%error_of(here, dt)
+        do stage = 2, stages
+            call here%surroundings%apply(together, self%deficit, self%traction)
+            do i = 1, size(self%blocks)
+                call self%rates(here, self%blocks(i), place(self, stage), sound)
+                if (stage < stages) then
+                    call self%to_stage(here, self%blocks(i), stage + 1, time, dt, state)
+                else
+                    call self%error_of(here, self%blocks(i), dt, error)
+                end if
+            end do
+        end do
+        if (.not. sound) error = huge(error)
     end subroutine try_step
 
     !> Where the rates of a stage are.
@@ -184,77 +263,110 @@ contains
         if (stage == stages) place = self%last_stage
     end function place
 
-    !> Slip and memory of a stage.
-    subroutine to_stage(self, stage, dt, state)
+    !> Slip, its deficit and memory of a stage, in a block.
+    subroutine to_stage(self, here, block, stage, time, dt, state)
         class(explicit_steps), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(cell_block), intent(in) :: block
         integer, intent(in) :: stage
-        real(dp), intent(in) :: dt
+        real(dp), intent(in) :: time, dt
         type(fault_state), intent(in) :: state
-        integer :: first, last, j, k
-        real(dp) :: part
+        integer, allocatable :: before(:)
+        integer :: j
 
-        do first = 1, size(self%slip), block
-            last = min(first + block - 1, size(self%slip))
-            self%slip(first:last) = state%slip(first:last)
-            self%memory(first:last) = state%memory(first:last)
-            do j = 1, stage - 1
-                part = dt * weight(j, stage)
-                if (.not. abs(part) > 0.0_dp) cycle
-                k = place(self, j)
-                self%slip(first:last) = self%slip(first:last) + part * self%slip_rate(first:last, k)
-                self%memory(first:last) = self%memory(first:last) &
-                    + part * self%memory_rate(first:last, k)
-            end do
-        end do
+        before = pack([(j, j = 1, stage - 1)], abs(weight(:stage - 1, stage)) > 0.0_dp)
+        associate (first => block%first, last => block%last, k => [(place(self, before(j)), &
+            j = 1, size(before))])
+            call add_rates(first, k, dt * weight(before, stage), self%slip_rate, &
+                state%slip(first:last), self%slip(first:last))
+            call add_rates(first, k, dt * weight(before, stage), self%memory_rate, &
+                state%memory(first:last), self%memory(first:last))
+            self%deficit(first:last) = self%slip(first:last) - here%plan%plate_rate * (time &
+                + node(stage) * dt)
+        end associate
     end subroutine to_stage
 
-    !> Rates of slip and memory of the stage that is at hand.
-    subroutine rates(self, here, together, time, k, sound)
-        class(explicit_steps), intent(inout) :: self
-        type(fault), intent(inout) :: here
-        type(team), intent(in) :: together
-        real(dp), intent(in) :: time
-        integer, intent(in) :: k        !! place of the rates
-        logical, intent(out) :: sound
-        real(dp), parameter :: most_memory = 400.0_dp   !! e^that is no time of this world
+    !> y = x + the sum of parts of rates, two at a time.
+    pure subroutine add_rates(first, places, parts, rates, x, y)
+        integer, intent(in) :: first, places(:)             !! cell of x(1); stages of the rates
+        real(dp), intent(in) :: parts(:)
+        real(dp), intent(in), contiguous :: rates(:, :)     !! cell, stage
+        real(dp), intent(in), contiguous :: x(:)
+        real(dp), intent(inout), contiguous :: y(:)
+        integer :: before, i, j
 
-        call here%tractions(together, time, self%slip, self%traction)
-        sound = all(abs(self%memory) < most_memory) .and. all(abs(self%traction) < huge(1.0_dp))
-        if (.not. sound) return
-        self%theta = exp(self%memory)
-        self%theta_rate = abs(self%traction)
-        call friction_slip_rates(self%theta_rate, here%pressure, here%damping, here%props, &
-            self%theta, self%slip_rate(:, k), self%memory_rate(:, k), self%status)
-        sound = all(self%status >= 0)
-        if (.not. sound) return
-        self%slip_rate(:, k) = sign(self%slip_rate(:, k), self%traction)
-        self%memory_rate(:, k) = self%memory_rate(:, k) / self%theta
+        before = first - 1
+        if (modulo(size(places), 2) == 1) then
+            do i = 1, size(x)
+                y(i) = x(i) + parts(1) * rates(before + i, places(1))
+            end do
+        else
+            do i = 1, size(x)
+                y(i) = x(i) + (parts(1) * rates(before + i, places(1)) + parts(2) &
+                    * rates(before + i, places(2)))
+            end do
+        end if
+        do j = 2 + modulo(size(places) + 1, 2), size(places), 2
+            do i = 1, size(x)
+                y(i) = y(i) + (parts(j) * rates(before + i, places(j)) + parts(j + 1) &
+                    * rates(before + i, places(j + 1)))
+            end do
+        end do
+    end subroutine add_rates
+
+    !> Rates of slip and memory of the stage that is at hand, in a block. Where a block is not
+    !> sound, its rates are 0.
+    subroutine rates(self, here, block, k, sound)
+        class(explicit_steps), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(cell_block), intent(in) :: block
+        integer, intent(in) :: k           !! place of the rates
+        logical, intent(inout) :: sound
+        real(dp), parameter :: most_memory = 400.0_dp   !! e^that is no time of this world
+        real(dp), dimension(block%last - block%first + 1) :: load, theta, theta_rate
+        integer :: status(block%last - block%first + 1)
+
+        associate (first => block%first, last => block%last)
+            load = self%traction(first:last) + here%prestress(first:last)
+            if (count(abs(self%memory(first:last)) < most_memory .and. abs(load) < huge(load)) &
+                < size(load)) sound = .false.
+            if (sound) then
+                theta = exp(self%memory(first:last))
+                call friction_slip_rates(abs(load), here%pressure(first:last), here%damping, &
+                    self%sets(block%set)%props, theta, self%slip_rate(first:last, k), theta_rate, status)
+                if (minval(status) < 0) sound = .false.
+            end if
+            if (sound) then
+                self%slip_rate(first:last, k) = sign(self%slip_rate(first:last, k), load)
+                self%memory_rate(first:last, k) = theta_rate / theta
+            else
+                self%slip_rate(first:last, k) = 0.0_dp
+                self%memory_rate(first:last, k) = 0.0_dp
+            end if
+        end associate
     end subroutine rates
 
-    function error_of(self, here, dt) result(error)
+    !> The largest error of slip and memory in a block, if it is larger than `error`.
+    subroutine error_of(self, here, block, dt, error)
         class(explicit_steps), intent(in) :: self
         type(fault), intent(in) :: here
+        type(cell_block), intent(in) :: block
         real(dp), intent(in) :: dt
-        real(dp) :: error
-        real(dp) :: of_slip(block), of_memory(block)
-        integer :: first, last, n, j, k
+        real(dp), intent(inout) :: error
+        integer, parameter :: counted(6) = [1, 3, 4, 5, 6, 7]
+        real(dp), dimension(block%last - block%first + 1) :: of_slip, of_memory, nothing
+        integer :: places(size(counted)), j
 
-        error = 0.0_dp
-        do first = 1, size(self%slip), block
-            last = min(first + block - 1, size(self%slip))
-            n = last - first + 1
-            of_slip(:n) = 0.0_dp
-            of_memory(:n) = 0.0_dp
-            do j = 1, stages
-                if (.not. abs(error_weight(j)) > 0.0_dp) cycle
-                k = place(self, j)
-                of_slip(:n) = of_slip(:n) + (dt * error_weight(j)) * self%slip_rate(first:last, k)
-                of_memory(:n) = of_memory(:n) &
-                    + (dt * error_weight(j)) * self%memory_rate(first:last, k)
-            end do
-            error = max(error, maxval(abs(of_slip(:n)) / here%slip_scale(first:last)), &
-                maxval(abs(of_memory(:n))))
-        end do
-    end function error_of
+        places = [(place(self, counted(j)), j = 1, size(counted))]
+        nothing = 0.0_dp
+        associate (first => block%first, last => block%last)
+            call add_rates(first, places, dt * error_weight(counted), self%slip_rate, nothing, &
+                of_slip)
+            call add_rates(first, places, dt * error_weight(counted), self%memory_rate, nothing, &
+                of_memory)
+            error = max(error, maxval(abs(of_slip) / here%slip_scale(first:last)), &
+                maxval(abs(of_memory)))
+        end associate
+    end subroutine error_of
 
 end module fault_explicit

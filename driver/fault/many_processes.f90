@@ -2,11 +2,10 @@
 !> hand is one process, and leaves MPI alone. Reductions are of numbers that do not depend on their
 !> order: largest, lowest, gathered. Transposes are FFTW's.
 module processes
-    use, intrinsic :: iso_c_binding, only : c_intptr_t, c_ptr
+    use, intrinsic :: iso_c_binding, only : c_double_complex, c_intptr_t, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fftw_mpi, only : fftw_destroy_plan, fftw_estimate, fftw_mpi_default_block, &
-        fftw_mpi_execute_r2r, fftw_mpi_init, fftw_mpi_local_size_many_transposed, &
-        fftw_mpi_plan_many_transpose
+        fftw_mpi_init, fftw_mpi_local_size_many_transposed, fftw_mpi_plan_many_transpose
     use local_transpose, only : transpose_here
     use mpi_f08, only : mpi_allgatherv, mpi_allreduce, mpi_barrier, mpi_bcast, mpi_bxor, &
         mpi_comm_rank, mpi_comm_size, mpi_comm_world, mpi_double_precision, mpi_finalize, &
@@ -25,6 +24,16 @@ module processes
         procedure :: start, end, largest, largest_of_each, lowest, any_of, xor_of, share, gather
         procedure :: wait, prepare_transposes, transpose_rows, transpose_columns
     end type team
+
+    interface
+        !> FFTW's own interface takes real numbers.
+        subroutine exchange(plan, from, to) bind(C, name='fftw_mpi_execute_r2r')
+            import :: c_double_complex, c_ptr
+            implicit none
+            type(c_ptr), value, intent(in) :: plan
+            complex(c_double_complex), intent(inout) :: from(*), to(*)
+        end subroutine exchange
+    end interface
 
 contains
 
@@ -154,17 +163,17 @@ contains
         if (self%members > 1) call mpi_barrier(mpi_comm_world)
     end subroutine wait
 
-    !> A matrix of pairs of numbers, of which each process has a block of rows, is to be turned
+    !> A matrix of complex numbers, of which each process has a block of rows, is to be turned
     !> into one of which it has a block of columns, and back. Blocks are FFTW's: all of
     !> ceiling(n/members) but for the last ones.
     subroutine prepare_transposes(self, rows, columns, room)
         class(team), intent(inout) :: self
         integer, intent(in) :: rows, columns
-        integer(int64), intent(out) :: room    !! numbers that each of the two buffers must hold
+        integer(int64), intent(out) :: room    !! numbers that each of two buffers must hold
         integer(c_intptr_t) :: own_rows, first_row, own_columns, first_column
         real(dp), allocatable :: from(:), to(:)
 
-        room = 2_int64 * rows * columns
+        room = int(rows, int64) * columns
         if (self%members == 1) return
         room = fftw_mpi_local_size_many_transposed(2, [int(rows, c_intptr_t), &
             int(columns, c_intptr_t)], 2_c_intptr_t, fftw_mpi_default_block, &
@@ -172,6 +181,7 @@ contains
             first_column)
         room = max(room, 2_int64 * rows * own_columns, 2_int64 * own_rows * columns, 2_int64)
         allocate (from(room), to(room))
+        room = (room + 1) / 2
         self%forth = fftw_mpi_plan_many_transpose(int(rows, c_intptr_t), int(columns, &
             c_intptr_t), 2_c_intptr_t, fftw_mpi_default_block, fftw_mpi_default_block, from, to, &
             mpi_comm_world%mpi_val, fftw_estimate)
@@ -181,14 +191,14 @@ contains
         self%prepared = .true.
     end subroutine prepare_transposes
 
-    !> from(2, columns, own rows) to to(2, rows, own columns)
+    !> from(columns, own rows) to to(rows, own columns)
     subroutine transpose_rows(self, rows, columns, from, to)
         class(team), intent(in) :: self
         integer, intent(in) :: rows, columns
-        real(dp), intent(inout), contiguous :: from(:), to(:)
+        complex(dp), intent(inout), contiguous :: from(:), to(:)
 
         if (self%members > 1) then
-            call fftw_mpi_execute_r2r(self%forth, from, to)
+            call exchange(self%forth, from, to)
         else
             call transpose_here(columns, rows, from, to)
         end if
@@ -198,10 +208,10 @@ contains
     subroutine transpose_columns(self, rows, columns, from, to)
         class(team), intent(in) :: self
         integer, intent(in) :: rows, columns
-        real(dp), intent(inout), contiguous :: from(:), to(:)
+        complex(dp), intent(inout), contiguous :: from(:), to(:)
 
         if (self%members > 1) then
-            call fftw_mpi_execute_r2r(self%back, from, to)
+            call exchange(self%back, from, to)
         else
             call transpose_here(rows, columns, from, to)
         end if

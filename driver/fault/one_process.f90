@@ -112,21 +112,21 @@ contains
         if (self%members < 1) return
     end subroutine wait
 
-    !> A matrix of pairs of numbers, of which each process has a block of rows, is to be turned
+    !> A matrix of complex numbers, of which each process has a block of rows, is to be turned
     !> into one of which it has a block of columns, and back.
     subroutine prepare_transposes(self, rows, columns, room)
         class(team), intent(inout) :: self
         integer, intent(in) :: rows, columns
-        integer(int64), intent(out) :: room    !! numbers that each of the two buffers must hold
+        integer(int64), intent(out) :: room    !! numbers that each of two buffers must hold
 
-        room = 2_int64 * rows * columns
+        room = int(rows, int64) * columns
     end subroutine prepare_transposes
 
-    !> from(2, columns, own rows) to to(2, rows, own columns)
+    !> from(columns, own rows) to to(rows, own columns)
     subroutine transpose_rows(self, rows, columns, from, to)
         class(team), intent(in) :: self
         integer, intent(in) :: rows, columns
-        real(dp), intent(inout), contiguous :: from(:), to(:)
+        complex(dp), intent(inout), contiguous :: from(:), to(:)
 
         if (self%members == 1) call transpose_here(columns, rows, from, to)
     end subroutine transpose_rows
@@ -135,7 +135,7 @@ contains
     subroutine transpose_columns(self, rows, columns, from, to)
         class(team), intent(in) :: self
         integer, intent(in) :: rows, columns
-        real(dp), intent(inout), contiguous :: from(:), to(:)
+        complex(dp), intent(inout), contiguous :: from(:), to(:)
 
         if (self%members == 1) call transpose_here(rows, columns, from, to)
     end subroutine transpose_columns
