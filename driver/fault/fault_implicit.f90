@@ -25,22 +25,28 @@ module fault_implicit
 
     public :: contact, implicit_steps
 
+    real(dp), parameter :: least_compliance = 1.0e-12_dp   !! left by the spring: round-off
+
     !> The contact of all cells at a time.
     type :: contact
         real(dp), allocatable :: statev(:, :)      !! cell, place
         real(dp), allocatable :: traction(:)       !! [F/L^2]
         real(dp), allocatable :: slip(:)           !! [L]
-        real(dp), allocatable :: last_slip(:)      !! in the step before [L]
+        real(dp), allocatable :: last_slip(:)      !! in the last step; the difference of slips
+                                                   !! would be round-off in short steps [L]
         real(dp) :: last_dt = huge(1.0_dp)         !! length of that step [T]
     end type contact
 
     type, extends(stepper) :: implicit_steps
         type(contact) :: now
         real(dp) :: force_scale = 0.0_dp           !! tractions are held against it [F/L^2]
-        integer, allocatable, private :: first(:)  !! cells from which on the constants are others
-        real(dp), allocatable, private :: props(:, :)    !! of each cell
+        real(dp) :: resolved = 0.0_dp              !! a step that sees any instability [T]
+        real(dp), allocatable :: mode(:)           !! of slip, nearest to instability
         real(dp), allocatable, private :: stiffness(:)   !! alpha_t of each cell [F/L^3]
-        real(dp), allocatable, private :: tangent(:), rate(:)
+        real(dp), allocatable, private :: rate(:)
+        real(dp), allocatable, private :: motion(:, :), answer(:, :), tangent(:, :, :)
+                                                   !! of friction: normal, tangential
+        integer, allocatable, private :: status(:)
     contains
         procedure :: start => start_implicit
         procedure :: begin
@@ -48,7 +54,7 @@ module fault_implicit
         procedure :: columns
         procedure :: keep
         procedure :: take
-        procedure, private :: advance, update
+        procedure, private :: advance, see_instability, update
     end type implicit_steps
 
 contains
@@ -65,13 +71,14 @@ contains
         self%now%traction = state%traction
         self%now%slip = state%slip
         self%now%last_slip = 0.0_dp * state%slip
+        self%mode = 0.0_dp * state%slip + 1.0_dp
     end subroutine start_implicit
 
     pure function columns(self) result(n)
         class(implicit_steps), intent(in) :: self
         integer :: n
 
-        n = 5 + statev_size
+        n = 6 + statev_size
     end function columns
 
     subroutine keep(self, state, columns, number)
@@ -84,7 +91,8 @@ contains
         columns(:, 3) = state%rate
         columns(:, 4) = state%traction
         columns(:, 5) = self%now%last_slip
-        columns(:, 6:) = self%now%statev
+        columns(:, 6) = self%mode
+        columns(:, 7:) = self%now%statev
         number = self%now%last_dt
     end subroutine keep
 
@@ -100,7 +108,8 @@ contains
         self%now%slip = columns(:, 1)
         self%now%traction = columns(:, 4)
         self%now%last_slip = columns(:, 5)
-        self%now%statev = columns(:, 6:)
+        self%mode = columns(:, 6)
+        self%now%statev = columns(:, 7:)
         self%now%last_dt = number
     end subroutine take
 
@@ -114,22 +123,15 @@ contains
         integer :: i
 
         sound = .true.
-
-        self%first = [integer ::]
+        allocate (self%motion(here%n, 2), self%answer(here%n, 2), self%tangent(here%n, 2, 2), &
+            self%status(here%n), self%stiffness(here%n))
         do i = 1, here%n
-            if (i > 1) then
-                if (all(abs(here%props(i, :) - here%props(i - 1, :)) <= 0.0_dp)) cycle
-            end if
-            self%first = [self%first, i]
+            facts = friction_facts(here%props(i, :))
+            self%stiffness(i) = facts%alpha_t
         end do
-        self%first = [self%first, here%n + 1]
-        self%props = here%props
-        allocate (self%tangent(here%n), self%rate(here%n), self%stiffness(here%n))
-        do i = 1, size(self%first) - 1
-            facts = friction_facts(here%props(self%first(i), :))
-            self%stiffness(self%first(i):self%first(i + 1) - 1) = facts%alpha_t
-        end do
+        self%motion(:, 1) = 0.0_dp
         self%rate = state%rate
+        self%resolved = 0.5_dp * max(here%cohesive_length, here%plan%dz()) / here%plan%wave_speed
         self%force_scale = together%largest(maxval(here%pressure))
         if (.not. state%dt > 0.0_dp) state%dt = 1.0e-9_dp * here%plan%t_end
     end subroutine begin
@@ -158,6 +160,7 @@ contains
                 0.5_dp * dt, two, sound)
             factor = least
             error = huge(error)
+            if (sound) call self%see_instability(here, together, dt, sound)
             if (sound) then
                 error = together%largest(max(maxval(abs(two%slip - whole%slip) / here%slip_scale), &
                     maxval(abs(two%traction - whole%traction) / (part * here%pressure)))) &
@@ -187,10 +190,10 @@ contains
         real(dp), intent(in) :: time, dt
         type(contact), intent(inout) :: to
         logical, intent(out) :: sound
+        logical :: definite
         integer, parameter :: most = 25
-        real(dp), parameter :: round_off = 1.0e-12_dp   !! of the compliance left by the spring
         real(dp), dimension(here%n) :: du, residual, compliance, x
-        real(dp) :: ratio, lead, tail, misfit, before
+        real(dp) :: ratio, lead, tail, misfit, before, round_off
         integer :: iteration
 
         ratio = dt / from%last_dt
@@ -198,71 +201,74 @@ contains
         tail = ratio**2 / (1.0_dp + ratio) / dt
         du = max(self%rate, 0.0_dp) * dt
         before = huge(before)
+        round_off = 4.0_dp * epsilon(before) * (self%force_scale &
+            + here%surroundings%self_stiffness * together%largest(maxval(abs(from%slip &
+            - here%plan%plate_rate * time))))
         do iteration = 1, most
-            call self%update(from, du, dt, to, sound)
+            call self%update(here, from, du, dt, to, sound)
             if (together%any_of(.not. sound)) exit
             call here%tractions(together, time + dt, to%slip, residual)
-            x = lead * (to%slip - from%slip) - tail * from%last_slip
+            x = lead * to%last_slip - tail * from%last_slip
             residual = residual - here%damping * x - to%traction
             misfit = together%largest(maxval(abs(residual)))
-            sound = misfit < 2.0e-7_dp * here%plan%rtol * self%force_scale
+            sound = misfit < 2.0e-7_dp * here%plan%rtol * self%force_scale + round_off
             if (sound) exit
             if (iteration > 5 .and. misfit > 0.9_dp * before) exit
             before = misfit
-            compliance = max(1.0_dp - self%tangent / self%stiffness, round_off)
-            call solve_minres(here, together, self%tangent / compliance + here%damping * lead, &
-                residual, 1.0e-3_dp, x)
+            compliance = max(1.0_dp - self%tangent(:, 2, 2) / self%stiffness, &
+                least_compliance)
+            call solve_minres(here, together, self%tangent(:, 2, 2) / compliance + here%damping &
+                * lead, residual, 1.0e-3_dp, x, definite)
             du = du + x / compliance
         end do
         sound = .not. together%any_of(.not. sound)
         if (.not. sound) return
         self%rate = x
-        to%last_slip = to%slip - from%slip
         to%last_dt = dt
     end subroutine advance
 
-    !> Friction of all cells for increments of displacement.
-    subroutine update(self, from, du, dt, to, sound)
+    !> Is a step so long that an instability would be stepped over? Where friction weakens faster
+    !> than the surroundings unload, slip grows at a rate of (weakening - unloading)/(2 damping) or
+    !> more, which takes hours to months. BDF2 damps what grows within a step of many times that
+    !> long: nothing but the matrix, which is then not definite, tells. The mode that is nearest to
+    !> it is followed from step to step by inverse iteration.
+    subroutine see_instability(self, here, together, dt, sound)
         class(implicit_steps), intent(inout) :: self
+        type(fault), intent(inout) :: here
+        type(team), intent(in) :: together
+        real(dp), intent(in) :: dt
+        logical, intent(out) :: sound   !! the step sees it, or there is none
+        real(dp), parameter :: tolerance = 0.1_dp
+        real(dp), dimension(here%n) :: compliance, x
+        real(dp) :: size_of_x
+
+        compliance = max(1.0_dp - self%tangent(:, 2, 2) / self%stiffness, least_compliance)
+        call solve_minres(here, together, self%tangent(:, 2, 2) / compliance + here%damping &
+            * 1.5_dp / dt, self%mode, tolerance, x, sound)
+        sound = sound .or. dt <= self%resolved
+        size_of_x = sqrt(here%part%row_sums(together, x**2))
+        if (size_of_x > 0.0_dp) self%mode = x / size_of_x
+    end subroutine see_instability
+
+    !> Friction of all cells for increments of displacement.
+    subroutine update(self, here, from, du, dt, to, sound)
+        class(implicit_steps), intent(inout) :: self
+        type(fault), intent(in) :: here
         type(contact), intent(in) :: from
         real(dp), intent(in) :: du(:), dt
         type(contact), intent(inout) :: to
         logical, intent(out) :: sound
-        integer :: group, first, last
 
         to%statev = from%statev
         to%statev(:, statev_slip) = 0.0_dp   ! small increments of slip must not drown in its sum
-        if (.not. allocated(to%traction)) allocate (to%traction(size(du)), to%slip(size(du)))
-        sound = .true.
-        do group = 1, size(self%first) - 1
-            first = self%first(group)
-            last = self%first(group + 1) - 1
-            call update_group(self, last - first + 1, first, du, dt, to, sound)
-        end do
+        self%motion(:, 2) = du
+        call friction_update_batch(self%motion, dt, here%props, to%statev, self%answer, &
+            self%tangent, self%status)
+        sound = all(self%status >= 0)
         if (.not. sound) return
-        to%slip = from%slip + sign(to%statev(:, statev_slip), to%traction)
+        to%traction = self%answer(:, 2)
+        to%last_slip = sign(to%statev(:, statev_slip), to%traction)
+        to%slip = from%slip + to%last_slip
     end subroutine update
-
-    !> Cells that have the same constants.
-    subroutine update_group(self, n, first, du, dt, to, sound)
-        type(implicit_steps), intent(inout) :: self
-        integer, intent(in) :: n, first
-        real(dp), intent(in) :: du(:), dt
-        type(contact), intent(inout) :: to
-        logical, intent(inout) :: sound
-        real(dp) :: statev(n, statev_size), motion(n, 2), traction(n, 2), tangent(n, 2, 2)
-        integer :: status(n)
-
-        statev = to%statev(first:first + n - 1, :)
-        motion(:, 1) = 0.0_dp
-        motion(:, 2) = du(first:first + n - 1)
-        call friction_update_batch(motion, dt, self%props(first, :), statev, traction, tangent, &
-            status)
-        sound = sound .and. all(status >= 0)
-        if (.not. sound) return
-        to%statev(first:first + n - 1, :) = statev
-        to%traction(first:first + n - 1) = traction(:, 2)
-        self%tangent(first:first + n - 1) = tangent(:, 2, 2)
-    end subroutine update_group
 
 end module fault_implicit

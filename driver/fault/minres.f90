@@ -15,19 +15,21 @@ module minres
 contains
 
     !> (diag(diagonal) - K) x = b, with K that of the fault's surroundings.
-    subroutine solve_minres(here, together, diagonal, b, tolerance, x)
+    subroutine solve_minres(here, together, diagonal, b, tolerance, x, definite)
         type(fault), intent(inout) :: here
         type(team), intent(in) :: together
         real(dp), intent(in) :: diagonal(:), b(:)
         real(dp), intent(in) :: tolerance   !! of the scaled residual, relative
         real(dp), intent(out) :: x(:)
+        logical, intent(out) :: definite    !! as far as the search has seen the matrix
         integer, parameter :: most = 200
         real(dp), dimension(here%n) :: scale, v, v_old, v_new, w, w_old, w_new
-        real(dp) :: alpha, beta, beta_new, c, c_old, s, s_old, eta, first, rho(0:3)
+        real(dp) :: alpha, beta, beta_new, c, c_old, s, s_old, eta, first, pivot, rho(0:3)
         integer :: iteration
 
         scale = 1.0_dp / sqrt(abs(diagonal) + here%surroundings%self_stiffness)
         x = 0.0_dp
+        definite = .true.
         v_old = 0.0_dp
         w = 0.0_dp
         w_old = 0.0_dp
@@ -42,12 +44,16 @@ contains
         s = 0.0_dp
         s_old = 0.0_dp
         beta = 0.0_dp
+        pivot = 1.0_dp
         do iteration = 1, most
             w_new = scale * v
             call here%surroundings%apply(together, w_new, v_new)
             v_new = scale * (diagonal * w_new - v_new)
             alpha = here%part%row_sums(together, v * v_new)
             v_new = v_new - alpha * v - beta * v_old
+            pivot = alpha - beta**2 / pivot   ! of the tridiagonal matrix
+            definite = definite .and. pivot > 0.0_dp
+            if (abs(pivot) <= 0.0_dp) pivot = tiny(pivot)
             beta_new = sqrt(here%part%row_sums(together, v_new**2))
             rho(0) = c * alpha - c_old * s * beta
             rho(1) = sqrt(rho(0)**2 + beta_new**2)
