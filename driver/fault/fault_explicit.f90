@@ -333,7 +333,8 @@ contains
             if (sound) then
                 theta = exp(self%memory(first:last))
                 call friction_slip_rates(abs(load), here%pressure(first:last), here%damping, &
-                    self%sets(block%set)%props, theta, self%slip_rate(first:last, k), theta_rate, status)
+                    self%sets(block%set)%props, theta, self%slip_rate(first:last, k), &
+                    theta_rate, status)
                 if (minval(status) < 0) sound = .false.
             end if
             if (sound) then
