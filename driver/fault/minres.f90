@@ -51,9 +51,8 @@ contains
             v_new = scale * (diagonal * w_new - v_new)
             alpha = here%part%row_sums(together, v * v_new)
             v_new = v_new - alpha * v - beta * v_old
-            pivot = alpha - beta**2 / pivot   ! of the tridiagonal matrix
-            definite = definite .and. pivot > 0.0_dp
-            if (abs(pivot) <= 0.0_dp) pivot = tiny(pivot)
+            if (definite) pivot = alpha - beta**2 / pivot   ! of the tridiagonal matrix
+            definite = pivot > 0.0_dp
             beta_new = sqrt(here%part%row_sums(together, v_new**2))
             rho(0) = c * alpha - c_old * s * beta
             rho(1) = sqrt(rho(0)**2 + beta_new**2)
