@@ -1,23 +1,33 @@
 #!/usr/bin/env python3
-"""Would the tests see a fault? Makes single-line changes to the library's sources, one at a time, in a copy, and runs the
-fast tests on each. Changes that no test notices are listed.
+"""Would the tests see a fault? Makes single-line changes to the library's sources, one at a time, and runs the unit tests on
+each until one fails. Changes that no test notices are listed.
 
 What is changed: a comparison and its bound (< and <=), the sense of a comparison, a sign, an operation, .and. and .or.,
 a .not., a coefficient, min and max, and conditions of one line, which are dropped with what they do.
 
-A survivor that makes no difference belongs into tests/mutants_equivalent.txt: file | line | mutation | reason. Lines are
-found again by their text.
+A mutant is one source, compiled alone and loaded before the library (LD_PRELOAD); nothing else is built for it. Tests that
+noticed others of its file come first, then the short ones. What an optimising compiler makes the same object of is no change.
+Results go into a journal as they come, and what it holds is not tried again, but survivors are.
+
+A survivor that makes no difference belongs into tests/mutants_equivalent.txt: file | line | mutation | reason, where ...
+stands for anything. Lines are found again by their text.
 """
 import argparse
-import filecmp
+import collections
+import concurrent.futures
 import fnmatch
+import gzip
+import json
+import os
 import pathlib
 import random
 import re
+import resource
+import shlex
 import shutil
 import subprocess
 import sys
-import time
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 EQUIVALENT = ROOT / 'tests/mutants_equivalent.txt'
@@ -35,11 +45,14 @@ CONDITION = re.compile(r'^(\s*)if \(.*\) (return|exit|cycle|\w+(%\w+)* = .*)$')
 
 
 class Mutant:
-    def __init__(self, file, number, old, new, what):
-        self.file, self.number, self.old, self.new, self.what = file, number, old, new, what
+    def __init__(self, file, text, number, new, what):
+        self.file, self.text, self.number, self.new, self.what = file, text, number, new, what
+        lines = text.splitlines()
+        self.old = lines[number - 1]
+        self.copy = sum(line.strip() == self.old.strip() for line in lines[:number - 1])   # lines before with the same text
 
     def key(self):
-        return self.file, ' '.join(self.old.split()), self.what
+        return self.file, ' '.join(self.old.split()), self.what, self.copy
 
     def __str__(self):
         return f'{self.file}:{self.number}: {self.what}\n    {self.old.strip()}\n    {self.new.strip()}'
@@ -52,8 +65,8 @@ def code_of(line):
 
 
 def mutants_of(file):
-    lines = (ROOT / file).read_text().splitlines()
-    for number, line in enumerate(lines, 1):
+    text = (ROOT / file).read_text()
+    for number, line in enumerate(text.splitlines(), 1):
         code = code_of(line).rstrip()
         if NO_STATEMENT.match(code):
             continue
@@ -67,130 +80,249 @@ def mutants_of(file):
                 if match.start() < start:
                     continue
                 for new in replacements:
-                    yield Mutant(file, number, line, line[:match.start()] + new + line[match.end():],
+                    yield Mutant(file, text, number, line[:match.start()] + new + line[match.end():],
                                  f'{match.group().strip()} -> {new.strip()} ({found})')
         for found, match in enumerate(NUMBER.finditer(code), 1):
             if match.start() >= start:
                 new = '1.0_wp' if float(match.group()[:-3]) == 0 else f'(1.5_wp * {match.group()})'
-                yield Mutant(file, number, line, line[:match.start()] + new + line[match.end():],
+                yield Mutant(file, text, number, line[:match.start()] + new + line[match.end():],
                              f'{match.group()} -> {new} ({found})')
         condition = CONDITION.match(code)
         if condition and not code.endswith('&'):
-            yield Mutant(file, number, line, condition.group(1) + 'continue', 'dropped')
+            yield Mutant(file, text, number, condition.group(1) + 'continue', 'dropped')
 
 
 def known_equivalents():
-    """Keys of the survivors that are explained, with the reason."""
-    known = {}
-    if EQUIVALENT.exists():
-        for line in EQUIVALENT.read_text().splitlines():
-            if line.strip() and not line.startswith('#'):
-                file, text, what, reason = (part.strip() for part in line.split(' | '))
-                known[file, text, what] = reason
+    """What is explained: file, text of the line, mutation, each with ... for anything, and the reason."""
+    known = []
+    for line in EQUIVALENT.read_text().splitlines():
+        if line.strip() and not line.startswith('#'):
+            *parts, reason = (part.strip() for part in line.split(' | '))
+            file, text, what = (re.compile(re.escape(part).replace(r'\.\.\.', '.*')) for part in parts)
+            known.append(((file, text, what), reason))
     return known
 
 
-class Copy:
-    """A copy of the project in which the mutants are built and tested."""
+def explained(mutant, known):
+    for patterns, _ in known:
+        if all(pattern.fullmatch(part) for pattern, part in zip(patterns, mutant.key()[:3])):
+            return patterns
+    return None
 
-    def __init__(self, limit, with_hosts):
-        self.place = ROOT / 'build/mutants'
-        self.source, self.build, self.limit = self.place / 'source', self.place / 'build', limit
-        files = subprocess.run(['git', 'ls-files'], cwd=ROOT, text=True, capture_output=True, check=True).stdout.split()
-        for old in [path for path in self.source.rglob('*') if path.is_file()]:
-            if str(old.relative_to(self.source)) not in files:
-                old.unlink()
-        for file in filter(lambda it: (ROOT / it).is_file(), files):   # what is as it was is not built again
-            (self.source / file).parent.mkdir(parents=True, exist_ok=True)
-            if not (self.source / file).exists() or not filecmp.cmp(ROOT / file, self.source / file, shallow=False):
-                shutil.copy(ROOT / file, self.source / file)
-        self.run(['cmake', '-S', str(self.source), '-B', str(self.build), '-DSTICKSLIP_BUILD_DRIVER=OFF'], check=True)
-        listed = re.findall(r'^add_test\((?:\[=\[)?(\w+)(?:\]=\])? "([^"]+)"',
-                            (self.build / 'tests/CTestTestfile.cmake').read_text(), re.MULTILINE)
-        self.programs = {name: pathlib.Path(program).name for name, program in listed
-                         if program.startswith(str(self.build / 'tests'))   # others are scripts
-                         and (with_hosts or not re.search('abaqus|calculix|kratos|host|fork', name))}
-        self.targets = list(self.programs)
-        built = self.make()
-        if built.returncode:
-            sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
-        self.times = {}
-        for target in self.targets:
-            begun = time.monotonic()
-            if self.fails(target, 10 * limit):
-                print(f'left out, because it fails or takes long on the sources as they are: {target}')
-            elif time.monotonic() - begun <= limit:
-                self.times[target] = time.monotonic() - begun
-        self.targets = sorted(self.times, key=self.times.get)
 
-    def run(self, command, check=False):
-        return subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=check)
+def run(command, **options):
+    return subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
 
-    def make(self):
-        return self.run(['nice', 'cmake', '--build', str(self.build), '-j2', '--target', *sorted(set(self.programs[target] for target in self.targets))])
 
-    def fails(self, target, limit):
-        return self.run(['ctest', '--test-dir', str(self.build), '-R', f'^{target}$', '--timeout', f'{limit:.0f}']).returncode != 0
+class Test:
+    """A program of the test suite: its command, where it runs, the sources that it holds, the time that it takes."""
 
-    def fate(self, mutant):
-        """What becomes of a mutant: the test that kills it, 'does not compile', or 'survives'."""
-        path = self.source / mutant.file
-        original = path.read_text()
-        lines = original.splitlines()
-        lines[mutant.number - 1] = mutant.new
-        path.write_text('\n'.join(lines) + '\n')
+    def __init__(self, name, command, folder, program, sources):
+        self.name, self.command, self.folder, self.sources = name, [str(program), *command[1:]], folder, sources
+        self.seconds = 0.0
+
+    def passes(self, preload=(), limit=1000.0):
+        """Runs with libraries that come first; the limit is one of CPU time, since the machine may be busy."""
+        environment = dict(os.environ, LD_PRELOAD=':'.join(map(str, preload)), OMP_NUM_THREADS='2')
+        limits = (int(limit) + 1, int(limit) + 2)
         try:
-            if self.make().returncode:
-                return 'does not compile'
-            for target in self.targets:
-                if self.fails(target, 10 * self.times[target] + 10):
-                    return target
-            return 'survives'
-        finally:
-            path.write_text(original)
+            return run(self.command, cwd=self.folder, env=environment, timeout=60 * limit + 60,
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limits)).returncode == 0
+        except (subprocess.TimeoutExpired, UnicodeDecodeError):
+            return False
+
+
+class Base:
+    """The library and the test programs as they are. The programs load the library, so that one object that is loaded before
+    it stands for a changed file: neither are other files compiled for a mutant nor is anything linked again."""
+
+    def __init__(self, limit, jobs):
+        self.build = ROOT / 'build/mutants'
+        for command in (['cmake', '-S', str(ROOT), '-B', str(self.build), '-G', 'Unix Makefiles', '-DSTICKSLIP_BUILD_DRIVER=OFF',
+                         '-DSTICKSLIP_VECTOR_KERNELS=OFF'], ['cmake', '--build', str(self.build), f'-j{jobs}']):
+            built = run(command)
+            if built.returncode:
+                sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
+        self.modules = sorted({path.parent for path in self.build.rglob('*.mod')}, key=lambda path: (path.parts[-3:-1] != ('mutants', 'src'), path))
+        paths = {path.name: path for path in sorted((ROOT / 'src').rglob('*.f90'))}
+        self.libraries, self.contents = {}, {}
+        for archive in self.build.rglob('lib*.a'):
+            library = self.libraries[archive.stem] = self.build / 'shared' / f'{archive.stem}.so'
+            library.parent.mkdir(exist_ok=True)
+            run(['gfortran', '-shared', '-fopenmp', '-Wl,--whole-archive', str(archive), '-Wl,--no-whole-archive', '-o', str(library)], check=True)
+            self.contents[library] = [name.removesuffix('.o') for name in run(['ar', 't', str(archive)]).stdout.split()]
+            for single in set(self.contents[library]) & {'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90'}:
+                text = (self.build / 'src/adapters' / single).read_text()
+                self.contents[library] += [name for name, path in paths.items() if path.read_text() in text]
+        order = [name for name in self.contents[self.libraries['libstickslip']] if name in paths]   # what is used comes first
+        self.sources = [paths.pop(name) for name in order] + list(paths.values())
+        self.tests = []
+        listed = json.loads(run(['ctest', '--test-dir', str(self.build), '--show-only=json-v1']).stdout)
+        for test in listed['tests']:
+            target = pathlib.Path(test['command'][0]).name
+            link = self.build / f'tests/CMakeFiles/{target}.dir/link.txt'
+            if link.exists() and 'build' not in ' '.join(test['command'][1:]):   # others are scripts or load a library by its place
+                folder = {item['name']: item['value'] for item in test['properties']}['WORKING_DIRECTORY']
+                self.tests.append(Test(test['name'], test['command'], folder, *self.linked(target, link.read_text())))
+        for test in self.tests:
+            begun = resource.getrusage(resource.RUSAGE_CHILDREN)
+            if not test.passes():
+                sys.exit(f'{test.name} fails on the sources as they are')
+            test.seconds = 0.005 + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - sum(begun[:2])
+        self.tests = [test for test in self.tests if test.seconds <= limit]
+
+    def linked(self, target, command):
+        sources = set()
+
+        def shared(match):
+            library = self.libraries.get(match.group(1), match.group())
+            sources.update(self.contents.get(library, ()))
+            return str(library)
+        command = re.sub(r'\S*\b(lib\w+)\.(?:a|so)[\d.]*(?= |$)', shared, command.strip())
+        program = self.build / 'shared' / target
+        command = re.sub(r' -o \S+', f' -o {program} -Wl,--no-as-needed', command)
+        run(shlex.split(command), cwd=self.build / 'tests', check=True)
+        return program, sources
+
+    def compile(self, source, folder, *options):
+        """Compiles one source into a folder, its modules too; true if it compiles."""
+        includes = [part for path in (folder, *self.modules) for part in ('-I', str(path))]
+        return run(['gfortran', '-std=f2008', '-fPIC', '-fopenmp', '-w', '-J', str(folder), *includes, *options, str(source)],
+                   cwd=folder).returncode == 0
+
+
+class Trial:
+    """One mutant in a folder of its own."""
+
+    def __init__(self, base, mutant, folder):
+        self.base, self.mutant, self.folder = base, mutant, folder
+        self.source = folder / pathlib.Path(mutant.file).name
+        lines = mutant.text.splitlines()
+        lines[mutant.number - 1] = mutant.new
+        self.changed = '\n'.join(lines) + '\n'
+        self.source.write_text(self.changed)
+
+    def library(self, source):
+        library = self.folder / f'{source.stem}.so'
+        return library if self.base.compile(source, self.folder, '-O0', '-shared', '-o', str(library)) else None
+
+    def copy(self, name):
+        """The copy of the source that tests compile in quadruple precision, changed likewise."""
+        run([sys.executable, str(ROOT / 'tests/support/quad_copy.py'), 'quad', str(self.folder), str(self.source)], check=True)
+        return self.library(self.folder / name)
+
+    def interface_changed(self):
+        for module in self.folder.glob('*.*mod'):
+            before = next((path / module.name for path in self.base.modules if (path / module.name).exists()), None)
+            if before and gzip.decompress(before.read_bytes()) != gzip.decompress(module.read_bytes()):
+                return True
+        return False
+
+    def dependents(self):
+        """All that uses the source, compiled again: constants of an interface are copied into their users."""
+        changed = {self.source.stem}
+        for source in self.base.sources:
+            text = source.read_text()
+            if changed & set(re.findall(r'^ *(?:use |submodule *\()(\w+)', text, re.MULTILINE)):
+                changed.add(source.stem)
+                yield self.library(source)
+
+    def same_object(self):
+        """Whether an optimising compiler makes the same of the changed source and of the original."""
+        objects = []
+        for text in (self.mutant.text, self.changed):
+            self.source.write_text(text)
+            if not self.base.compile(self.source, self.folder, '-O2', '-c', '-o', 'compared.o'):
+                return False
+            objects.append((self.folder / 'compared.o').read_bytes())
+        return objects[0] == objects[1]
+
+    def fate(self, kills):
+        """What becomes of the mutant: the test that notices it, 'does not compile', 'same object' or 'survives'."""
+        changed = self.library(self.source)
+        if changed is None:
+            return 'does not compile'
+        preload, name, copied = [changed], self.source.name, f'quad_{self.source.name}'
+        if self.interface_changed():
+            preload += self.dependents()
+        copy = None
+        tests = [test for test in self.base.tests if test.sources & {name, copied}]
+        tests.sort(key=lambda test: test.seconds / (kills[test.name] + 0.3))
+        for count, test in enumerate(tests):
+            if count == 8 and self.same_object():
+                return 'same object'
+            if copied in test.sources:
+                copy = copy or self.copy(copied)
+            libraries = preload * (name in test.sources) + [copy] * (copied in test.sources)
+            if not test.passes(filter(None, libraries), 3 * test.seconds + 1):
+                return test.name
+        return 'survives'
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('pattern', nargs='*', default=['src/friction_*.f90', 'src/laws/*.f90'],
-                        help='which files, e.g. "src/laws/*.f90"')
+    parser.add_argument('pattern', nargs='*', default=['src/*.f90'], help='which files, e.g. "src/laws/*.f90"')
     parser.add_argument('--sample', type=int, help='how many mutants, drawn at random; all, if left out')
     parser.add_argument('--seed', type=int, default=1, help='of the draw')
-    parser.add_argument('--limit', type=float, default=5, help='tests that take longer than this are left out [s]')
+    parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='how many at the same time')
+    parser.add_argument('--limit', type=float, default=3, help='tests that take longer than this are left out [s]')
+    parser.add_argument('--journal', type=pathlib.Path, default=ROOT / 'build/mutants.journal', help='what is known already')
     parser.add_argument('--list', action='store_true', help='list the mutants and do nothing')
     options = parser.parse_args()
 
-    files = sorted(str(file.relative_to(ROOT)) for file in (ROOT / 'src').rglob('*.f90'))
-    files = [file for file in files if any(fnmatch.fnmatch(file, pattern) for pattern in options.pattern)]
     known = known_equivalents()
-    mutants = [mutant for file in files for mutant in mutants_of(file)]
-    stale = set(known) - {mutant.key() for mutant in mutants if mutant.key() in known}
-    if options.pattern == parser.get_default('pattern') and stale:
-        print('no such line or mutation any more, in tests/mutants_equivalent.txt:', *sorted(stale), sep='\n    ')
-    total = len(mutants)
-    mutants = [mutant for mutant in mutants if mutant.key() not in known]
+    every = [mutant for file in sorted((ROOT / 'src').rglob('*.f90')) for mutant in mutants_of(str(file.relative_to(ROOT)))]
+    stale = [patterns for patterns, _ in known if not any(explained(mutant, [(patterns, '')]) for mutant in every)]
+    for patterns in stale:
+        print('tests/mutants_equivalent.txt, no such line or mutation any more:', ' | '.join(it.pattern for it in patterns))
+    mutants = [mutant for pattern in options.pattern for mutant in every if fnmatch.fnmatch(mutant.file, pattern)]
     if options.sample is not None and options.sample < len(mutants):
-        mutants = sorted(random.Random(options.seed).sample(mutants, options.sample), key=lambda it: (it.file, it.number))
-    print(f'{len(mutants)} of {total} mutants in {len(files)} files, {total - len(mutants)} left out; '
-          f'{len(known)} are known to be equivalent', flush=True)
+        mutants = random.Random(options.seed).sample(mutants, options.sample)
+    fates = {}
+    if options.journal.exists():
+        for line in options.journal.read_text().splitlines():
+            *key, fate = json.loads(line)
+            fates[tuple(key)] = fate
+    for mutant in mutants:
+        if fates.get(mutant.key(), 'survives') == 'survives' and explained(mutant, known):
+            fates[mutant.key()] = 'explained'
+    waiting = [mutant for mutant in dict.fromkeys(mutants) if fates.get(mutant.key(), 'survives') == 'survives']
+    print(f'{len(mutants)} mutants, {len(waiting)} to try', flush=True)
     if options.list:
-        print(*mutants, sep='\n')
+        print(*waiting, sep='\n')
         return 0
-    copy = Copy(options.limit, any('adapters' in file for file in files))
-    print('tests:', ', '.join(copy.targets), flush=True)
-    survivors, broken = [], 0
-    for count, mutant in enumerate(mutants, 1):
-        fate = copy.fate(mutant)
-        broken += fate == 'does not compile'
-        if fate == 'survives':
-            survivors.append(mutant)
-            print(f'[{count}] SURVIVES {mutant}', flush=True)
-        else:
-            print(f'[{count}] {mutant.file}:{mutant.number} {mutant.what}: {fate}', flush=True)
-    print(f'\n{len(mutants) - broken} mutants, {len(mutants) - broken - len(survivors)} noticed, {len(survivors)} survive '
-          f'({broken} did not compile)')
-    print(*survivors, sep='\n')
-    return 1 if survivors else 0
+    if waiting:
+        try_all(waiting, fates, options)
+    counts = collections.Counter(fates.get(mutant.key(), 'survives') for mutant in mutants)
+    aside = {name: counts.pop(name, 0) for name in ('does not compile', 'same object', 'explained', 'survives')}
+    print(f'\n{len(mutants)} mutants: {sum(counts.values())} noticed,', ', '.join(f'{name}: {it}' for name, it in aside.items()))
+    print(*(mutant for mutant in mutants if fates.get(mutant.key()) == 'survives'), sep='\n')
+    return 1 if aside['survives'] else 0
+
+
+def try_all(mutants, fates, options):
+    os.nice(10)
+    base = Base(options.limit, options.jobs)
+    print('tests:', ', '.join(f'{test.name} {test.seconds:.2f} s' for test in base.tests), flush=True)
+    kills = collections.defaultdict(collections.Counter)
+    for (file, *_), fate in fates.items():
+        kills[file][fate] += 1
+
+    def attempt(mutant):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix='mutant'))
+        try:
+            return Trial(base, mutant, folder).fate(kills[mutant.file])
+        finally:
+            shutil.rmtree(folder)
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool, options.journal.open('a') as journal:
+        for count, (mutant, fate) in enumerate(zip(mutants, pool.map(attempt, mutants)), 1):
+            fates[mutant.key()] = fate
+            kills[mutant.file][fate] += 1
+            journal.write(json.dumps([*mutant.key(), fate]) + '\n')
+            journal.flush()
+            print(f'[{count}] {mutant}: SURVIVES' if fate == 'survives' else f'[{count}] {mutant.file}:{mutant.number} {mutant.what}: {fate}',
+                  flush=True)
 
 
 if __name__ == '__main__':
