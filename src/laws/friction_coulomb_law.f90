@@ -5,7 +5,7 @@
 !> Nothing evolves; the internal variable stays 0.
 module friction_coulomb_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law_state, load_rates, named_law
+    use friction_law, only : below, law_state, load_rates, named_law, sliding
     use friction_law_constants, only : constant_table, law_constant, name_length
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
@@ -24,6 +24,7 @@ module friction_coulomb_law
         procedure :: admits
         procedure :: rest
         procedure :: slide
+        procedure :: solve
         procedure :: slip_rate
         procedure :: state_rates
     end type coulomb_law
@@ -108,6 +109,19 @@ contains
         d_slip = 0.0_wp
         d_pressure = self%mu
     end subroutine slide
+
+    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
+        class(coulomb_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        logical, intent(out) :: solved
+
+        answer%slip = (trial - self%mu * pressure) / stiffness
+        call slide(self, answer%slip, pressure, dt, old, answer%state, answer%resistance, &
+            answer%d_slip, answer%d_pressure)
+        solved = .true.
+    end subroutine solve
 
     pure subroutine slip_rate(self, state, load, rate, jumps)
         class(coulomb_law), intent(in) :: self
