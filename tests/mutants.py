@@ -121,9 +121,9 @@ class Test:
         self.name, self.command, self.folder, self.sources = name, [str(program), *command[1:]], folder, sources
         self.seconds = 0.0
 
-    def passes(self, preload=(), limit=1000.0):
+    def passes(self, preload=(), limit=1000.0, **environment):
         """Runs with libraries that come first; the limit is one of CPU time, since the machine may be busy."""
-        environment = dict(os.environ, LD_PRELOAD=':'.join(map(str, preload)), OMP_NUM_THREADS='2')
+        environment = dict(os.environ, **environment, LD_PRELOAD=':'.join(map(str, preload)), OMP_NUM_THREADS='2')
         limits = (int(limit) + 1, int(limit) + 2)
         try:
             return run(self.command, cwd=self.folder, env=environment, timeout=60 * limit + 60,
@@ -145,7 +145,7 @@ class Base:
                 sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
         self.modules = sorted({path.parent for path in self.build.rglob('*.mod')}, key=lambda path: (path.parts[-3:-1] != ('mutants', 'src'), path))
         paths = {path.name: path for path in sorted((ROOT / 'src').rglob('*.f90'))}
-        self.libraries, self.contents = {}, {}
+        self.libraries, self.contents, self.objects = {}, {}, {}
         for archive in self.build.rglob('lib*.a'):
             library = self.libraries[archive.stem] = self.build / 'shared' / f'{archive.stem}.so'
             library.parent.mkdir(exist_ok=True)
@@ -171,6 +171,35 @@ class Base:
             if not passes and test.seconds <= limit:
                 sys.exit(f'{test.name} fails on the sources as they are')
         self.tests = [test for test in self.tests if test.seconds <= limit]
+        self.lines = {test.name: self.lines_of(test) for test in self.tests if 'friction_mod.f90' in test.sources}
+
+    def lines_of(self, test):
+        """How often a test runs each line of the library: file name -> line -> count."""
+        folder = self.build / 'coverage'
+        library = folder / 'library.so'
+        if not library.exists() or library.stat().st_mtime < self.libraries['libstickslip'].stat().st_mtime:
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            library_sources = [source for source in self.sources if source.name in self.contents[self.libraries['libstickslip']]]
+            if not self.compile(library_sources[-1], folder, '-O0', '--coverage', '-shared', '-o', str(library), *map(str, library_sources[:-1])):
+                sys.exit('no coverage')
+        place = folder / test.name
+        if not place.exists():
+            place.mkdir()
+            test.passes([library], GCOV_PREFIX=str(place), GCOV_PREFIX_STRIP='99')
+            for notes in folder.glob('*.gcno'):
+                shutil.copy(notes, place)
+        found = subprocess.run(['gcov', '--json-format', '--stdout', *place.glob('*.gcda')], cwd=place, text=True, capture_output=True, check=True)
+        return {pathlib.Path(file['file']).name: {line['line_number']: line['count'] for line in file['lines']}
+                for line in found.stdout.splitlines() for file in json.loads(line)['files']}
+
+    def runs(self, test, mutant):
+        """Whether a test runs the statement that a mutant changes; true where that is not known."""
+        lines, number = mutant.text.splitlines(), mutant.number
+        while number > 1 and code_of(lines[number - 2]).rstrip().endswith('&'):
+            number -= 1
+        counts = self.lines.get(test.name, {}).get(pathlib.Path(mutant.file).name, {})
+        return any(counts.get(line, 1) > 0 for line in range(number, mutant.number + 1))
 
     def linked(self, target, command):
         sources = set()
@@ -230,13 +259,12 @@ class Trial:
 
     def same_object(self):
         """Whether an optimising compiler makes the same of the changed source and of the original."""
-        objects = []
-        for text in (self.mutant.text, self.changed):
-            self.source.write_text(text)
-            if not self.base.compile(self.source, self.folder, '-O2', '-c', '-o', 'compared.o'):
-                return False
-            objects.append((self.folder / 'compared.o').read_bytes())
-        return objects[0] == objects[1]
+        for text in (self.changed, self.mutant.text):
+            if text not in self.base.objects:
+                self.source.write_text(text)
+                self.base.compile(self.source, self.folder, '-O2', '-c', '-o', 'compared.o')
+                self.base.objects[text] = (self.folder / 'compared.o').read_bytes()
+        return self.base.objects.pop(self.changed) == self.base.objects[self.mutant.text]
 
     def fate(self, kills):
         """What becomes of the mutant: the test that notices it, 'does not compile', 'same object' or 'survives'."""
@@ -247,7 +275,7 @@ class Trial:
         if self.interface_changed():
             preload += self.dependents()
         copy = None
-        tests = [test for test in self.base.tests if test.sources & {name, copied}]
+        tests = [test for test in self.base.tests if test.sources & {name, copied} and self.base.runs(test, self.mutant)]
         tests.sort(key=lambda test: test.seconds / (kills[test.name] + 0.3))
         for count, test in enumerate(tests):
             if count == 6 and self.same_object():
