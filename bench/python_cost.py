@@ -31,7 +31,9 @@ def main():
     n = int(float(sys.argv[1])) if len(sys.argv) > 1 else 100_000
     pressed = stickslip.update([-0.01, 0.0, 0.0], 0.01, LAW).state
     one = np.array([0.0, 1e-4, 0.0])
-    print(f'one point                       {1e6 * cost(lambda: stickslip.update(one, 0.01, LAW, pressed), 10_000):8.2f} us')
+    peer = cost(lambda: np.add(one, one), 10_000)
+    call = cost(lambda: stickslip.update(one, 0.01, LAW, pressed), 10_000)
+    print(f'one point                       {1e6 * call:8.2f} us, {call / peer:.1f} times numpy.add of two vectors of 3')
     du = np.random.default_rng(1).normal(scale=1e-4, size=(n, 3))
     du[:, 0] = 0
     times = {}

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import functools
 import pathlib
 import sys
 from typing import NamedTuple
@@ -31,6 +32,12 @@ update_batch = library.friction_update_batch
 update_batch.argtypes = [_int64, *_arrays, _pointer]
 update_points = library.friction_update_points
 update_points.argtypes = [_int64, *_arrays, _pointer]
+update_batch_props = library.friction_update_batch_props
+update_batch_props.argtypes = [_int64, *_arrays, _pointer]
+rates = library.friction_rates
+rates.argtypes = [_int, _pointer, _int, _pointer, _int, _pointer, _pointer]
+slip_rates = library.friction_slip_rates
+slip_rates.argtypes = [_int64, _pointer, _pointer, _double, _int, *5 * [_pointer]]
 library.friction_message.restype = ctypes.c_char_p
 library.friction_version.restype = ctypes.c_char_p
 
@@ -64,6 +71,7 @@ library.friction_get_default.argtypes = [_int, _pointer, _int, ctypes.POINTER(_d
 library.friction_check.argtypes = [_int, _pointer, _int, ctypes.c_char_p]
 
 
+@functools.cache
 def constants_of(law: int) -> tuple[Constant, ...]:
     """The constants of a law after its number, in their order."""
     facts, constant = _LawFacts(), _ConstantFacts()

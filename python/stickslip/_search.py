@@ -378,23 +378,24 @@ def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.nda
 
 
 def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, which: int) -> np.ndarray:
-    """Covariance of the constants along a flat valley of the misfit: 0 the flattest, 1 the next. It is curved: slopes at the best candidate
-    alone make the errors several times too small. Where the constant with the largest part in the flattest direction is
-    held at one value after the other, the others are found anew; likelihoods weigh the way."""
+    """Covariance of the constants along a flat valley of the misfit: 0 the flattest, 1 the next. It is curved: slopes at
+    the best candidate alone make the errors several times too small. Where the constant with the largest part in the
+    flattest direction is held at one value after the other, the others are found anew; likelihoods weigh the way."""
     if candidate.size < which + 2:
         return np.zeros((candidate.size, candidate.size))
     strengths, directions = np.linalg.eigh(slope.T @ slope)
     strength, direction = strengths[which], directions[:, which]
     held = int(np.argmax(np.abs(direction)))
     first = float(np.clip(abs(direction[held]) / np.sqrt(max(strength, 1e-12)), 0.01, 0.1))
-    misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
     start = direction / direction[held]
+    misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
     places, costs = [candidate], [float(misfit @ misfit)]
     for side in (-1.0, 1.0):
+        surface = Surface(problem, candidate, slope)
         place, ahead = candidate, side * first * start
         for _ in range(WAY):
             guess = np.clip(place + ahead, problem.low + 1e-6, problem.high - 1e-6)
-            found, cost = _others(problem, guess, held)
+            found, cost = surface.lowest(guess, held)
             ahead = 1.6 * (found - place)
             place = found
             places.append(found)
@@ -414,19 +415,35 @@ WAY = 7        # steps along the valley to either side, at most
 FAR = 9.0      # rise of the misfit at which it is not followed any more: three standard deviations
 
 
-def _others(problem: Problem, guess: np.ndarray, held: int) -> tuple[np.ndarray, float]:
-    """The best candidate with one constant held."""
-    from scipy.optimize import least_squares
+class Surface:
+    """The misfit around a candidate whose slopes are known. Each evaluation corrects the slopes along the way it was
+    reached by (Broyden), so that a walk needs no differences: those cost two evaluations a constant."""
 
-    others = np.arange(guess.size) != held
+    def __init__(self, problem: Problem, candidate: np.ndarray, slope: np.ndarray) -> None:
+        self.problem, self.slope, self.at = problem, slope.copy(), candidate
+        self.misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
 
-    def whole(part: np.ndarray) -> np.ndarray:
-        candidate = guess.copy()
-        candidate[others] = part
-        return candidate
+    def evaluate(self, candidate: np.ndarray) -> np.ndarray:
+        """The misfit there; corrects the slopes."""
+        misfit = self.problem.misfit(self.problem.evaluate('full', [candidate])[0])
+        step = candidate - self.at
+        if (length := step @ step) > 0.0:
+            self.slope += np.outer(misfit - self.misfit - self.slope @ step, step / length)
+        self.at, self.misfit = candidate, misfit
+        return misfit
 
-    found = least_squares(lambda part: problem.misfit(problem.evaluate('full', [whole(part)])[0]), guess[others],
-                          lambda part: problem.jacobian(whole(part))[0][:, others],
-                          bounds=(problem.low[others] - 1e-9, problem.high[others] + 1e-9), max_nfev=4, xtol=1e-4, ftol=1e-4,
-                          x_scale=0.1)
-    return whole(found.x), 2.0 * float(found.cost)
+    def lowest(self, guess: np.ndarray, held: int) -> tuple[np.ndarray, float]:
+        """The best candidate with one constant held at its value in the guess, and its squared misfit."""
+        from scipy.optimize import least_squares
+
+        others = np.arange(guess.size) != held
+
+        def whole(part: np.ndarray) -> np.ndarray:
+            candidate = guess.copy()
+            candidate[others] = part
+            return candidate
+
+        found = least_squares(lambda part: self.evaluate(whole(part)), guess[others], lambda _: self.slope[:, others],
+                              bounds=(self.problem.low[others] - 1e-9, self.problem.high[others] + 1e-9), max_nfev=8,
+                              xtol=1e-4, ftol=1e-3, x_scale=0.1)
+        return whole(found.x), 2.0 * float(found.cost)

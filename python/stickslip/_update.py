@@ -2,22 +2,40 @@
 from __future__ import annotations
 
 import ctypes
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from .laws import Law
+from .laws import AtPoints, Law
 
 STATE_SIZE = 8   # numbers of a state: status, u_n, u_et1, u_et2, mu, internal variable, slip, dissipated energy
 _FLOAT = np.dtype(np.float64)
 
-# By the shape of du: memory for state, traction and tangent (column-major) of a point, and their places in it.
-_LAYOUTS = {(ndir,): (ctypes.c_double * (STATE_SIZE + ndir + ndir**2), ndir, STATE_SIZE + ndir, (ndir, ndir),
-                      8 * STATE_SIZE, 8 * (STATE_SIZE + ndir)) for ndir in (2, 3)}
-_byref, _c_double, _update_point = ctypes.byref, ctypes.c_double, _library.update_one
-_frombuffer, _ndarray, _new = np.frombuffer, np.ndarray, tuple.__new__
+class _Place(NamedTuple):
+    """Memory that an update of one point works on, with the C routine's arguments that point to it."""
+
+    state: np.ndarray
+    traction: np.ndarray
+    tangent: np.ndarray
+    dt: ctypes.c_double
+    arguments: tuple
+
+
+def _new_place(ndir: int) -> _Place:
+    memory = (ctypes.c_double * (STATE_SIZE + ndir + ndir**2))()
+    numbers = np.frombuffer(memory)
+    last = STATE_SIZE + ndir
+    arguments = (STATE_SIZE, memory, ctypes.byref(memory, 8 * STATE_SIZE), ctypes.byref(memory, 8 * last))
+    return _Place(numbers[:STATE_SIZE], numbers[STATE_SIZE:last], numbers[last:].reshape(ndir, ndir).T, ctypes.c_double(),
+                  arguments)
+
+
+# By the shape of du of one point: ndir, and places that nobody works on. They are taken and given back in one operation of
+# the interpreter, so that threads never share one.
+_PLACES: dict[tuple, tuple[int, list[_Place]]] = {(ndir,): (ndir, []) for ndir in (2, 3)}
+_update_point, _ndarray, _new, _nan = _library.update_one, np.ndarray, tuple.__new__, np.nan
 
 
 class Result(NamedTuple):
@@ -29,14 +47,14 @@ class Result(NamedTuple):
     status: np.ndarray     #: (n,) 0 solved, 1 solved but several equilibria exist, < 0 refused: `message(status)`
 
 
-def update(du: ArrayLike, dt: float, law: Law, state: ArrayLike | None = None, out: Result | None = None) -> Result:
-    """Friction update of one contact point, or of many with the same constants.
+def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | None = None, out: Result | None = None) -> Result:
+    """Friction update of one contact point, or of many.
 
     du: increment of relative displacement, normal, tangential 1[, tangential 2] [L]; shape (ndir,), or (n, ndir) for n
         points, with ndir 2 or 3. An array in C order, or in Fortran order (component-major), of 64-bit floats is used
         where it lies; others are copied.
     dt: increment of time, >= 0 [T].
-    law: an object of `stickslip.laws`.
+    law: an object of `stickslip.laws`; one at n points (`Law.at_points`) has constants of its own at each.
     state: shape (8,) or (n, 8), at the start of the increment, as an earlier result gave it; None: virgin points. It is
         left as it is.
     out: an earlier result of the same shapes and order whose arrays are written again, which saves the time that new
@@ -47,33 +65,63 @@ def update(du: ArrayLike, dt: float, law: Law, state: ArrayLike | None = None, o
     """
     if type(du) is not _ndarray or du.dtype is not _FLOAT:
         du = np.asarray(du, _FLOAT)
-    if (layout := _LAYOUTS.get(du.shape)) is not None:
-        # One point. Every line counts here: a call takes two microseconds, half of them in the library.
-        buffer, ndir, last, square, to_traction, to_tangent = layout
-        room = buffer()
-        numbers = _frombuffer(room)
-        if state is not None:
-            if len(state) != STATE_SIZE:
-                raise ValueError(f'state has the length {len(state)}: {STATE_SIZE} is needed')
-            numbers[:STATE_SIZE] = state
-        status = _update_point(ndir, du.tobytes(), _c_double(dt), law._size, law._pointer, STATE_SIZE, room,
-                               _byref(room, to_traction), _byref(room, to_tangent))
+    if (places := _PLACES.get(du.shape)) is not None:
+        if type(law) is AtPoints:
+            raise ValueError(f'the law has constants of {len(law)} points: du needs the shape ({len(law)}, ndir)')
+        # One point. Every line counts here: a call takes less than two microseconds, a third of them in the library.
+        ndir, free = places
+        try:
+            place = free.pop()
+        except IndexError:
+            place = _new_place(ndir)
+        here, traction, tangent, time, arguments = place
+        if state is None:
+            here[...] = 0.0
+        elif len(state) != STATE_SIZE:
+            raise ValueError(f'state has the length {len(state)}: {STATE_SIZE} is needed')
+        else:
+            here[...] = state
+        time.value = dt
+        status = _update_point(ndir, du.tobytes(), time, law._size, law._pointer, *arguments)
         if status < 0:
-            numbers[STATE_SIZE:] = np.nan
-        result = _new(Result, (numbers[STATE_SIZE:last], numbers[last:].reshape(square).T, numbers[:STATE_SIZE], status))
+            traction[...] = tangent[...] = _nan
+        result = _new(Result, (traction.copy(), tangent.copy(), here.copy(), status))
+        free.append(place)
         return result if out is None else _copy_to(out, result)
-    if du.ndim != 2 or du.shape[1:] not in _LAYOUTS:
+    if du.ndim != 2 or du.shape[1:] not in _PLACES:
         raise ValueError(f'du has the shape {du.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
     by_point = du.flags.c_contiguous or not du.flags.f_contiguous
     order = 'C' if by_point else 'F'
-    du = np.asarray(du, order=order)
     n, ndir = du.shape
     if out is None:
-        out = Result(np.empty((n, ndir), order=order), np.empty((n, ndir, ndir), order=order),
-                     np.empty((n, STATE_SIZE), order=order), np.empty(n, np.int32))
+        out = _new_result(n, ndir, order)
     else:
         _check_out(out, order, n, ndir)
-    traction, tangent, new, status = out
+    _take_state(out.state, state)
+    if not isinstance(law, AtPoints):
+        routine = _library.update_points if by_point else _library.update_batch
+        _update_all(routine, np.asarray(du, order=order), dt, law._size, law._pointer, out)
+        return out
+    if len(law) != n:
+        raise ValueError(f'the law has constants of {len(law)} points, du of {n}')
+    columns = out   # constants of each point go with arrays that are component-major
+    if by_point:
+        columns = _new_result(n, ndir, 'F')
+        columns.state[...] = out.state
+    _update_all(_library.update_batch_props, np.asarray(du, order='F'), dt, len(law.props), law.props.ctypes.data, columns)
+    if by_point:
+        for name in Result._fields:
+            getattr(out, name)[...] = getattr(columns, name)
+    return out
+
+
+def _new_result(n: int, ndir: int, order: str) -> Result:
+    return Result(np.empty((n, ndir), order=order), np.empty((n, ndir, ndir), order=order),
+                  np.empty((n, STATE_SIZE), order=order), np.empty(n, np.int32))
+
+
+def _take_state(new: np.ndarray, state: ArrayLike | None) -> None:
+    """Puts the state at the start where the update works on it."""
     if state is None:
         new[...] = 0.0
     elif state is not new:
@@ -81,13 +129,17 @@ def update(du: ArrayLike, dt: float, law: Law, state: ArrayLike | None = None, o
         if state.shape != new.shape:
             raise ValueError(f'state has the shape {state.shape}: {new.shape} is needed')
         new[...] = state
-    routine = _library.update_points if by_point else _library.update_batch
-    worst = routine(n, ndir, du.ctypes.data, dt, law._size, law._pointer, STATE_SIZE, new.ctypes.data,
-                    traction.ctypes.data, tangent.ctypes.data, status.ctypes.data)
+
+
+def _update_all(routine: Any, du: np.ndarray, dt: float, nprops: int, props: Any, out: Result) -> None:
+    """All points by a routine of the library, in place."""
+    n, ndir = du.shape
+    traction, tangent, state, status = out
+    worst = routine(n, ndir, du.ctypes.data, dt, nprops, props, STATE_SIZE, state.ctypes.data, traction.ctypes.data,
+                    tangent.ctypes.data, status.ctypes.data)
     if worst < 0:
         traction[status < 0] = np.nan
         tangent[status < 0] = np.nan
-    return out
 
 
 def _check_out(out: Result, order: str, n: int, ndir: int) -> None:

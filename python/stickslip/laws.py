@@ -12,10 +12,12 @@ import dataclasses
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _library
 
-__all__ = ['Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic', 'Subloading']
+__all__ = ['AtPoints', 'Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic', 'Subloading']
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Law:
@@ -59,6 +61,14 @@ class Law:
         except (TypeError, ValueError):
             raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number') from None
 
+    def at_points(self, **constants: ArrayLike) -> AtPoints:
+        """The same law with other values of some constants at each of n points, for `update` and `slip_rates`.
+
+        constants: numbers by name, n of each; the others, and all choices, are those of this law. A constant that has a
+        default, and no value here, follows those of its point.
+        """
+        return AtPoints(self, constants)
+
     def constants(self) -> dict[str, Any]:
         """Names and values of the constants, as keys of the program's group ``&friction``."""
         given = {'law': self.name}
@@ -67,6 +77,51 @@ class Law:
             if field.init and value is not None and (field.default is dataclasses.MISSING or value != field.default):
                 given[field.name] = value
         return given
+
+
+class AtPoints:
+    """A law whose constants vary from point to point (`Law.at_points`).
+
+    law: where all else is taken from. props: the constants in the order of the friction routine, component-major: shape
+    (constants, n), read-only. ``len()`` is n. A constant out of its range is a ValueError that names the first such point.
+    """
+
+    def __init__(self, law: Law, constants: dict[str, ArrayLike]) -> None:
+        self.law = law
+        known = {constant.name: constant for constant in _library.constants_of(law.number)}
+        given = {}
+        for name, values in constants.items():
+            if name not in known:
+                raise TypeError(f"{type(law).__name__} has no constant {name}; there are {', '.join(known)}")
+            if known[name].words:
+                raise ValueError(f'{name} is a choice, which all points share')
+            given[name] = np.asarray(values, float)
+        sizes = {values.shape for values in given.values()}
+        if len(sizes) != 1 or len(next(iter(sizes))) != 1:
+            raise ValueError('one number a point is needed of each constant: the shapes are '
+                             + (', '.join(f'{name} {values.shape}' for name, values in given.items()) or 'none'))
+        rows = [np.full(sizes.pop(), float(law.number))]
+        for place, name in enumerate(known, 1):
+            if name in given:
+                rows.append(given[name])
+            elif getattr(law, name) is None:
+                rows.append(np.array([_library.default_of(list(before)) for before in zip(*rows)], float))
+            else:
+                rows.append(np.full(rows[0].shape, law.props[place]))
+        self.props = np.array(rows)
+        self.props.flags.writeable = False
+        self._check()
+
+    def __len__(self) -> int:
+        return self.props.shape[1]
+
+    def __repr__(self) -> str:
+        return f'{self.law!r} at {len(self)} points'
+
+    def _check(self) -> None:
+        for i, props in enumerate(np.ascontiguousarray(self.props.T)):
+            if broken := _library.broken_rule(ctypes.c_void_p(props.ctypes.data), props.size):
+                raise ValueError(f'{type(self.law).__name__}, point {i}: {broken}')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

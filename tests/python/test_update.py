@@ -127,6 +127,121 @@ class Update(unittest.TestCase):
             np.testing.assert_array_equal(result.tangent, right.tangent)
 
 
+class AtPoints(unittest.TestCase):
+    """Constants of their own at each point: the same as one point after the other."""
+
+    def laws_of(self, n):
+        draw = np.random.default_rng(5)
+        return [(LAWS['subloading'], {'mu_s': draw.uniform(0.4, 0.6, n), 'kappa': draw.uniform(1, 9, n)}),
+                (LAWS['coulomb'], {'mu': draw.uniform(0.1, 0.6, n), 'alpha_t': draw.uniform(500, 900, n)}),
+                (LAWS['static_kinetic'], {'d_c': draw.uniform(1, 4, n)}),
+                (LAWS['rate_and_state'], {'d_c': draw.uniform(0.01, 0.1, n), 'a': draw.uniform(0.01, 0.02, n)}),
+                (LAWS['slip_weakening'], {'mu_s': draw.uniform(0.4, 0.6, n)})]
+
+    def test_each_point_is_as_if_it_were_alone(self):
+        n = 150
+        for law, constants in self.laws_of(n):
+            points = law.at_points(**constants)
+            self.assertEqual(len(points), n)
+            alone = [dataclasses.replace(law, **{name: values[i] for name, values in constants.items()}) for i in range(n)]
+            np.testing.assert_array_equal(points.props.T, [each.props for each in alone])
+            for ndir in (2, 3):
+                for order in 'CF':
+                    first, then = (np.array(motions(n, ndir, seed), order=order) for seed in (1, 2))
+                    start = stickslip.update(first, 0.1, points)
+                    result = stickslip.update(then, 0.1, points, start.state)
+                    self.assertEqual(result.traction.flags.f_contiguous, order == 'F')
+                    for i in range(n):
+                        one = stickslip.update(then[i], 0.1, alone[i], stickslip.update(first[i], 0.1, alone[i]).state)
+                        for a, b in zip(one, result):
+                            np.testing.assert_allclose(a, b[i], rtol=1e-11, atol=1e-11 * np.abs(a).max(), err_msg=str(alone[i]))
+                    again = stickslip.update(then, 0.1, points, start.state, out=start)
+                    self.assertIs(again.tangent, start.tangent)
+                    np.testing.assert_array_equal(again.tangent, result.tangent)
+
+    def test_bad_points_and_constants_are_told(self):
+        law = LAWS['subloading']
+        mu_s = np.array([0.4, 0.5, 0.2, 0.1])
+        with self.assertRaisesRegex(ValueError, 'Subloading, point 2: .*mu_k'):
+            law.at_points(mu_s=mu_s)
+        points = law.at_points(mu_s=mu_s + 0.3)
+        for order in 'CF':
+            du = np.array(motions(4, 3), order=order)
+            du[1, 0] = np.inf
+            bad = stickslip.update(du, 0.1, points)
+            self.assertEqual(bad.status.tolist(), [0, -4, 0, 0])
+            self.assertTrue(np.isnan(bad.traction[1]).all() and np.isfinite(bad.traction[[0, 2, 3]]).all())
+        with self.assertRaisesRegex(ValueError, 'constants of 4 points, du of 5'):
+            stickslip.update(motions(5, 3), 0.1, points)
+        with self.assertRaisesRegex(ValueError, 'du needs the shape'):
+            stickslip.update([0.0, 0.0], 0.1, points)
+        for constants, words in (({'mu_s': mu_s, 'kappa': [1, 2]}, 'one number a point'), ({}, 'one number a point'),
+                                 ({'mu_s': 0.3}, 'one number a point'), ({'scheme': [0, 1]}, 'a choice')):
+            with self.assertRaisesRegex(ValueError, words):
+                law.at_points(**constants)
+        with self.assertRaisesRegex(TypeError, 'no constant mu'):
+            law.at_points(mu=[0.3])
+
+
+class Rates(unittest.TestCase):
+    LAW = stickslip.laws.RateAndState(alpha_n=1, alpha_t=1, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6)
+
+    def strength(self, rate, theta, pressure, a=0.01):
+        """a p asinh(V/(2 v0) exp((f0 + b ln(v0 theta/d_c))/a))."""
+        return a * pressure * np.arcsinh(rate / 2e-3 * np.exp((0.6 + 0.015 * np.log(0.1 * theta)) / a))
+
+    def test_slip_rates_balance_the_traction(self):
+        draw = np.random.default_rng(2)
+        theta, pressure = 10.0 ** draw.uniform(-1, 3, (40, 50)), draw.uniform(1, 9, 50)
+        tau = 0.6 * pressure * draw.uniform(0.9, 1.1, (40, 50))
+        found = stickslip.slip_rates(tau, pressure, self.LAW, theta, damping=0.3)
+        self.assertEqual(found.rate.shape, (40, 50))
+        self.assertEqual(found.status.max(), 0)
+        np.testing.assert_allclose(self.strength(found.rate, theta, pressure) + 0.3 * found.rate, tau, rtol=1e-10)
+        np.testing.assert_allclose(found.theta_rate, 1 - found.rate * theta / 0.01, rtol=1e-9, atol=1e-9)
+
+    def test_slip_rates_with_constants_of_each_point(self):
+        a = np.linspace(0.008, 0.02, 300)
+        found = stickslip.slip_rates(3.0, 5.0, self.LAW.at_points(a=a), 10.0)
+        np.testing.assert_allclose(self.strength(found.rate, 10.0, 5.0, a), 3.0, rtol=1e-10)
+        with self.assertRaisesRegex(ValueError, 'constants of 300 points'):
+            stickslip.slip_rates(np.ones((2, 300)), 5.0, self.LAW.at_points(a=a), 10.0)
+
+    def test_bad_slip_rates_are_told(self):
+        found = stickslip.slip_rates([3.0, -1.0, 3.0], 5.0, self.LAW, 10.0)
+        self.assertEqual((found.status < 0).tolist(), [False, True, False])
+        self.assertEqual(np.isnan(found.rate).tolist(), [False, True, False])
+        self.assertEqual(stickslip.slip_rates(3.0, 5.0, LAWS['coulomb'], 1.0).status, -2)
+        with self.assertRaises(ValueError):
+            stickslip.slip_rates([1.0, 2.0], [1.0, 2.0, 3.0], self.LAW, 1.0)
+
+    def test_rates_are_what_short_updates_tend_to(self):
+        """Differences over dt: their error is of its order."""
+        dt = 1e-7
+        velocity = np.array([0.0, 0.02, 0.01])
+        for name in ('subloading', 'rate_and_state'):
+            law = LAWS[name]
+            state = stickslip.update([-0.01, 0.004, 0.001], 0.1, law).state
+            found = stickslip.rates(velocity, law, state)
+            self.assertEqual(found.status, 0)
+            after = stickslip.update(velocity * dt, dt, law, state).state
+            slope = (after - state)[1:] / dt
+            np.testing.assert_allclose(found.rates[1:], slope, rtol=1e-3, atol=1e-4 * np.abs(slope).max(), err_msg=name)
+
+    def test_rates_of_many_points_and_bad_ones(self):
+        law = LAWS['subloading']
+        state = stickslip.update(motions(5, 2), 0.1, law).state
+        velocity = np.tile([0.0, 0.01], (5, 1))
+        velocity[3] = np.nan
+        found = stickslip.rates(velocity, law, state)
+        self.assertEqual((found.status < 0).tolist(), [False, False, False, True, False])
+        self.assertTrue(np.isnan(found.rates[3]).all())
+        np.testing.assert_array_equal(found.rates[4], stickslip.rates(velocity[4], law, state[4]).rates)
+        for velocity, state in (([0.0], np.zeros(8)), ([0.0, 1.0], np.zeros(7)), (np.zeros((3, 2)), np.zeros((2, 8)))):
+            with self.assertRaises(ValueError):
+                stickslip.rates(velocity, law, state)
+
+
 class Laws(unittest.TestCase):
     def test_every_law_and_constant_of_the_library_has_its_name_here(self):
         for name, law in LAWS.items():

@@ -1,0 +1,84 @@
+"""Friction in continuous time: rates of a state, slip rates without a contact spring (docs/python.md)."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _library
+from ._update import STATE_SIZE
+from .laws import AtPoints, Law
+
+
+LEAST_PROPS = 8   # that the library's slip rates ask for
+
+
+class Rates(NamedTuple):
+    """What `rates` gives. For one point the arrays lack the first dimension, and `status` is an int."""
+
+    rates: np.ndarray    #: (n, 8) d(state)/dt; that of the contact's status is 0; NaN where status < 0
+    status: np.ndarray   #: (n,) 0, or < 0 refused: `message(status)`; -11 where slip starts with a jump and has no rate
+
+
+class SlipRates(NamedTuple):
+    """What `slip_rates` gives, in the shape of its arguments."""
+
+    rate: np.ndarray         #: slip rate, >= 0 [L/T]; NaN where status < 0
+    theta_rate: np.ndarray   #: d(theta)/dt at that slip rate [-]; NaN where status < 0
+    status: np.ndarray       #: 0, or < 0 refused: `message(status)`
+
+
+def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
+    """Rates of a contact's state, to which `update` tends as its increment of time tends to 0 (docs/theory.md, section 10).
+
+    velocity: relative velocity, normal, tangential 1[, tangential 2] [L/T]; shape (ndir,), or (n, ndir) for n points,
+        with ndir 2 or 3.
+    law: an object of `stickslip.laws`.
+    state: shape (8,) or (n, 8), as `update` gives it; not changed.
+
+    A bad state or velocity is a negative status of that point; wrong shapes are a ValueError.
+    """
+    velocity = np.ascontiguousarray(velocity, np.float64)
+    state = np.ascontiguousarray(state, np.float64)
+    if velocity.ndim not in (1, 2) or velocity.shape[-1] not in (2, 3):
+        raise ValueError(f'velocity has the shape {velocity.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
+    if state.shape != (*velocity.shape[:-1], STATE_SIZE):
+        raise ValueError(f'state has the shape {state.shape}: {(*velocity.shape[:-1], STATE_SIZE)} is needed')
+    found = np.full(state.shape, np.nan)
+    points = velocity.size // velocity.shape[-1]
+    status = np.empty(points, np.int32)
+    for i in range(points):
+        status[i] = _library.rates(velocity.shape[-1], velocity.ctypes.data + i * velocity.strides[0], law._size,
+                                   law._pointer, STATE_SIZE, state.ctypes.data + i * state.strides[0],
+                                   found.ctypes.data + i * found.strides[0])
+    return Rates(found, int(status[0]) if velocity.ndim == 1 else status)
+
+
+def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: ArrayLike, damping: float = 0.0) -> SlipRates:
+    """Slip rates V >= 0 of points without a contact spring: tau - damping V = friction(V, theta, pressure).
+
+    tau: magnitude of the tangential traction, >= 0 [F/L^2].
+    pressure: >= 0 [F/L^2].
+    law: `RateAndState` (others get the status -2, bad law), or one at points (`Law.at_points`). Its springs are not used.
+    theta: state of the surface, > 0 [T].
+    damping: radiation damping, >= 0, for instance G/(2 c_s) [F T/L^3].
+
+    tau, pressure and theta are numbers or arrays of shapes that go together (numpy's broadcasting); with a law at n points
+    their shape is (n,). Bad input at a point is a negative status there and harms no other. Releases the interpreter's
+    lock; more than 2000 points are shared out among OpenMP's threads.
+    """
+    own = isinstance(law, AtPoints)
+    shape = np.broadcast_shapes(*map(np.shape, (tau, pressure, theta)), (len(law),) if own else ())
+    tau, pressure, theta = (np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float64), shape))
+                            for values in (tau, pressure, theta))
+    n = tau.size
+    if own and shape != (len(law),):
+        raise ValueError(f'the law has constants of {len(law)} points, the other arguments the shape {shape}')
+    props = law.props if own else np.repeat(law.props[:, None], n, axis=1)
+    if len(props) < LEAST_PROPS:   # so that the status says that the law is the wrong one
+        props = np.concatenate([props, np.zeros((LEAST_PROPS - len(props), n))])
+    rate, theta_rate, status = np.full(shape, np.nan), np.full(shape, np.nan), np.empty(shape, np.int32)
+    _library.slip_rates(n, tau.ctypes.data, pressure.ctypes.data, damping, len(props), props.ctypes.data, theta.ctypes.data,
+                        rate.ctypes.data, theta_rate.ctypes.data, status.ctypes.data)
+    return SlipRates(rate, theta_rate, status)
