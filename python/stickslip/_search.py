@@ -68,6 +68,11 @@ class Problem:
     def high(self) -> np.ndarray:
         return np.log([constant.high for constant in self.constants])
 
+    @property
+    def size(self) -> int:
+        """Number of features."""
+        return sum(target.values.size for target in self.targets)
+
     def settings(self, candidate: np.ndarray, target: Target) -> Settings:
         """Input of the run of one candidate for one record, without its end."""
         settings = _namelist.merge(self.base, target.analysis.record.settings)
@@ -324,17 +329,31 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
                                      problem.coarse_jacobian, 'soft_l1', 10))
         limits.tell(f'coarse {k + 1} of 4: misfit {coarse[-1][1]:.3g}')
     coarse.sort(key=lambda found: found[1])
-    size = sum(target.values.size for target in problem.targets)
     for k, (candidate, _) in enumerate(coarse):
-        for floor, step, loss in STAGES:
-            candidate, cost = _descend(problem, candidate, floor, step, loss, 8)
-            best.update((candidate, cost))
-            limits.tell(f'fine {k + 1} of at most 4: misfit {cost / size:.3g} a feature')
-        if best.cost < _by_noise_alone(problem, best.candidate):
+        if _fine(problem, candidate, best, f'fine {k + 1} of at most {len(coarse)}'):
             break
     problem.limits.tell('last steps')
     problem.shift = _shift_by_noise(problem, best.candidate)
     return _descend(problem, best.candidate, FLOOR, STEP, 'linear', 30, 1e-7)
+
+
+def _fine(problem: Problem, candidate: np.ndarray, best: Best, label: str) -> bool:
+    """Least squares on all features from one start. Is the search over? It is where noise explains the misfit, or where
+    another start has come to the same one. A start that stays far above another's end is given up."""
+    other = best.cost
+    for k, (floor, step, loss) in enumerate(STAGES):
+        candidate, cost = _descend(problem, candidate, floor, step, loss, 8)
+        best.update((candidate, cost))
+        problem.limits.tell(f'{label}: misfit {cost / problem.size:.3g} a feature')
+        if k > 0 and other / SAME < cost < SAME * other:
+            return True
+        if k > 0 and cost > HOPELESS * other:
+            return False
+    return best.cost < _by_noise_alone(problem, best.candidate)
+
+
+SAME = 1.5          # times the misfit of another start: the same valley
+HOPELESS = 30.0     # times the misfit of another start
 
 
 def _by_noise_alone(problem: Problem, candidate: np.ndarray) -> float:
