@@ -35,6 +35,7 @@ class Target:
     scale: np.ndarray                    #: what a relative error of the model is relative to
     first_load: float                    #: end of the first loading in the record [T]; 0: it has none
     near: float                          #: half width of the window around a drop [T]
+    rig: float                           #: relative error of the slope of the loading that the rig's own numbers have
 
     def errors(self, floor: float = FLOOR) -> np.ndarray:
         """Standard deviations of the features, with a relative error of the model. The times of events are by far the
@@ -105,19 +106,20 @@ def medians(time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[np.ndarr
     return np.median(each, axis=0), each
 
 
-def make_target(analysis: Analysis) -> Target:
-    """What of this record is to be fitted."""
+def make_target(analysis: Analysis, rig: float = RIG) -> Target:
+    """What of this record is to be fitted. rig: part of the slope of a scattered record's loading that stiffness, velocity
+    and units may be wrong by; 0 where one of them is found from it."""
     falls = analysis.falls
     near = min(0.2 * analysis.period, 3.0 * float(np.median(falls.end - falls.onset)))
     if analysis.scattered:
         values, each = medians(analysis.time, analysis.force, falls)
         errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
-        rig = np.where(np.array(MEDIANS) == 'slope', RIG * np.abs(values), 0.0)
-        return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, rig), np.abs(values), 0.0, near)
+        unknown = np.where(np.array(MEDIANS) == 'slope', rig * np.abs(values), 0.0)
+        return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, unknown), np.abs(values), 0.0, near, rig)
     events = min(len(falls), MOST_EVENTS)
     first_load = 0.97 * falls.middle[0] if analysis.from_rest else 0.0
     blank = Target(analysis, events + (0 if analysis.from_rest else SKIPPED), (), np.empty(0), np.empty(0), np.empty(0),
-                   first_load, near)
+                   first_load, near, rig)
     values = blank._repeating(analysis.time, analysis.force, falls.part(slice(None, events)))
     names, noise, scale = _errors(blank, events, values)
     return dataclasses.replace(blank, names=names, values=values, noise=noise, scale=scale)

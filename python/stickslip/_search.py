@@ -40,10 +40,16 @@ class Constant:
     key: str
     low: float
     high: float
+    is_factor: bool = False   #: multiplies what the settings have, instead of taking its place
 
     def set(self, settings: Settings, value: float) -> None:
         """Puts a value into the settings of a run."""
-        settings.setdefault(self.group, {})[self.key] = float(value)
+        keys = settings.setdefault(self.group, {})
+        if self.is_factor:
+            if self.key in keys:   # records may have it, each its own, and the input not
+                keys[self.key] = (float(value) * np.asarray(keys[self.key], float)).tolist()
+        else:
+            keys[self.key] = float(value)
 
 
 @dataclasses.dataclass

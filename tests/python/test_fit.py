@@ -1,4 +1,5 @@
 """stickslip.fit: constants from synthetic records, and records that it refuses."""
+import dataclasses
 import pathlib
 import subprocess
 import sys
@@ -77,6 +78,21 @@ class Fit(unittest.TestCase):
                                                      'bounds': {'mu_s': (0.35, 0.45), 'alpha_n': (0.1, 10.0)}})
         self.assertEqual(found.undetermined, ['alpha_n'])
         self.assertEqual(found.intervals['alpha_n'], (0.0, np.inf))
+
+    def test_a_wrong_velocity_is_told_and_can_be_found(self):
+        """The record was taken at v = 1; the input says 0.9."""
+        record = stickslip.Record(self.time, self.force, {'drive': {'velocity': 0.9}}, name='rig')
+        wrong = stickslip.fit(record, INPUT, **{**SETTINGS, 'starts': 4})
+        told = [warning for warning in wrong.warnings if 'faster than stiffness times velocity' in warning]
+        self.assertEqual(len(told), 1, wrong.warnings)
+        self.assertRegex(told[0], "rig: .* a velocity of (0.9[5-9]|1.0).* 'velocity_factor' or 'slider.stiffness'")
+        found = stickslip.fit(record, INPUT, **{**SETTINGS, 'free': [*TRUE, 'velocity_factor']})
+        low, high = found.intervals['velocity_factor']
+        self.assertLess(abs(np.log(found.values['velocity_factor'] * 0.9)), 1.3 * 0.5 * np.log(high / low), str(found))
+        self.assertAlmostEqual(found.values['velocity_factor'], 1 / 0.9, delta=0.005)
+        self.assertAlmostEqual(found.settings()['drive']['velocity'], 1.0, delta=0.005)
+        with self.assertRaisesRegex(ValueError, 'velocity_factor: rig has no drive.velocity'):
+            stickslip.fit(dataclasses.replace(record, settings={}), {**INPUT, 'drive': {}}, free=['velocity_factor'])
 
     def test_the_command_does_the_same(self):
         with tempfile.TemporaryDirectory() as folder:
