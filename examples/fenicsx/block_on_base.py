@@ -10,10 +10,10 @@ both, and alike.
 """
 import sys
 
-import dolfinx.fem.petsc
 import numpy as np
 import ufl
 from dolfinx import fem, mesh
+from dolfinx.fem import petsc
 from mpi4py import MPI
 from petsc4py import PETSc
 
@@ -135,7 +135,7 @@ class Block:
         scale = None
         for iterations in range(30):
             self.contact.update(dt)
-            forces = fem.petsc.assemble_vector(self.residual)
+            forces = petsc.assemble_vector(self.residual)
             forces.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
             push = self.domain.comm.allreduce(float(forces.array[fixed].sum()))
             forces.array[fixed] = 0.0
@@ -144,7 +144,7 @@ class Block:
             if iterations and size < 1e-11 * max(scale, PRESSURE * LENGTH):
                 self.contact.accept()
                 return push, iterations
-            matrix = fem.petsc.assemble_matrix(self.derivative, bcs=[self.fixed])
+            matrix = petsc.assemble_matrix(self.derivative, bcs=[self.fixed])
             matrix.assemble()
             self.solver.setOperators(matrix)
             change = forces.duplicate()
