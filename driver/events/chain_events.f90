@@ -2,7 +2,9 @@
 !>
 !> In every step, neighbours that slip faster than a limit are a run. A run that touches the blocks
 !> of an event that is under way belongs to it, and joins events that it touches together. An event
-!> ends with the last step in which one of its blocks slips that fast.
+!> ends with the last step in which one of its blocks slips that fast. It counts if the drive
+!> springs of its blocks have changed their force meanwhile by more than a limit: contact springs
+!> that only let go do not move blocks; and if it took more than one fixed step, which cannot tell.
 !>
 !> On a ring the last block touches the first. An event over that seam is kept as two, one from the
 !> first block on and one up to the last, that are under way and end together, as one.
@@ -21,13 +23,17 @@ module chain_events
         real(dp) :: end = 0.0_dp              !! end of the last step [T]
         integer :: first = 0, last = 0        !! blocks; over a ring's seam `last` goes on
         real(dp) :: slip = 0.0_dp             !! sum over the blocks [L]
+        real(dp) :: spring = 0.0_dp           !! change of the drive springs' forces, likewise [F]
         real(dp) :: peak_velocity = 0.0_dp    !! largest slip rate of a block [L/T]
         logical :: under_way = .true.         !! some of its blocks slip in this step
     end type chain_event
 
     !> Events under way, in the order of their blocks; no two of them touch.
     type :: chain_finder
-        real(dp) :: slip_rate = 0.0_dp                !! the limit [L/T]
+        real(dp) :: slip_rate = 0.0_dp                !! that must be exceeded [L/T]
+        real(dp) :: drop = 0.0_dp                     !! of the drive springs' forces, likewise [F]
+        real(dp) :: duration = 0.0_dp                 !! likewise [T]
+        integer :: unresolved = 0                     !! events that were too short to count
         logical :: ring = .false.                     !! the last block touches the first
         type(chain_event), allocatable :: events(:)   !! room for `count` and more
         integer :: count = 0
@@ -53,7 +59,8 @@ contains
         least = self%slip_rate * (new%time - old%time)
         do i = 1, size(new%x)
             slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
-            if (slip > least) call take_in(self, i, slip, old%time, new%time, k)
+            if (slip > least) call take_in(self, chain_event(old%time, new%time, i, i, slip, &
+                new%spring(i) - old%spring(i), slip / (new%time - old%time)), k)
         end do
         if (self%over_seam(size(new%x))) then
             associate (low => self%events(1), high => self%events(self%count))
@@ -62,6 +69,8 @@ contains
             end associate
         end if
         call self%take_ended(size(new%x), ended)
+        self%unresolved = self%unresolved + count(ended%end - ended%onset <= self%duration)
+        ended = pack(ended, ended%end - ended%onset > self%duration)
     end subroutine look
 
     !> Returns all that is under way.
@@ -102,46 +111,41 @@ contains
         self%events(:self%count - size(ended)) = pack(self%events(:self%count), &
             self%events(:self%count)%under_way)
         self%count = self%count - size(ended)
-        if (.not. joined) return
-        ended(1)%last = n_blocks + ended(1)%last
-        call absorb(ended(size(ended)), ended(1))
-        ended = ended(2:)
+        if (joined) then
+            ended(1)%first = n_blocks + ended(1)%first
+            ended(1)%last = n_blocks + ended(1)%last
+            call absorb(ended(size(ended)), ended(1))
+            ended = ended(2:)
+        end if
+        ended = pack(ended, abs(ended%spring) > self%drop)
     end subroutine take_ended
 
     !> Adds a block that slips; the blocks of a step come one after the other.
-    pure subroutine take_in(self, block, slip, start, end, k)
+    pure subroutine take_in(self, this, k)
         class(chain_finder), intent(inout) :: self
-        integer, intent(in) :: block
-        real(dp), intent(in) :: slip         !! in the step [L]
-        real(dp), intent(in) :: start, end   !! of the step [T]
-        integer, intent(inout) :: k          !! no event before this one can touch the block
+        type(chain_event), intent(in) :: this   !! the block in the step
+        integer, intent(inout) :: k             !! no event before this one can touch the block
+        logical :: touches
 
         do while (k <= self%count)
-            if (self%events(k)%last >= block - 1) exit
+            if (self%events(k)%last >= this%first - 1) exit
             k = k + 1
         end do
-        if (k > self%count) then
-            call insert(self, k, block, start)
-        else if (self%events(k)%first > block + 1) then
-            call insert(self, k, block, start)
+        touches = k <= self%count
+        if (touches) touches = self%events(k)%first <= this%last + 1
+        if (touches) then
+            call absorb(self%events(k), this)
+        else
+            call insert(self, k, this)
         end if
-        associate (event => self%events(k))
-            event%under_way = .true.
-            event%end = end
-            event%first = min(event%first, block)
-            event%last = max(event%last, block)
-            event%slip = event%slip + slip
-            event%peak_velocity = max(event%peak_velocity, slip / (end - start))
-        end associate
         if (k == self%count) return
         if (self%events(k + 1)%first <= self%events(k)%last + 1) call join(self, k)
     end subroutine take_in
 
-    pure subroutine insert(self, k, block, start)
+    pure subroutine insert(self, k, this)
         class(chain_finder), intent(inout) :: self
         integer, intent(in) :: k
-        integer, intent(in) :: block
-        real(dp), intent(in) :: start   !! [T]
+        type(chain_event), intent(in) :: this
         type(chain_event), allocatable :: more(:)
         integer :: i
 
@@ -154,7 +158,7 @@ contains
             self%events(i + 1) = self%events(i)
         end do
         self%count = self%count + 1
-        self%events(k) = chain_event(onset=start, end=start, first=block, last=block)
+        self%events(k) = this
     end subroutine insert
 
     !> Events `k` and `k + 1` are one.
@@ -170,16 +174,19 @@ contains
         self%count = self%count - 1
     end subroutine join
 
-    !> Adds to an event the one behind it.
-    pure subroutine absorb(event, behind)
+    !> Adds to an event another one.
+    pure subroutine absorb(event, other)
         type(chain_event), intent(inout) :: event
-        type(chain_event), intent(in) :: behind
+        type(chain_event), intent(in) :: other
 
-        event%onset = min(event%onset, behind%onset)
-        event%end = max(event%end, behind%end)
-        event%last = max(event%last, behind%last)
-        event%slip = event%slip + behind%slip
-        event%peak_velocity = max(event%peak_velocity, behind%peak_velocity)
+        event%onset = min(event%onset, other%onset)
+        event%end = max(event%end, other%end)
+        event%first = min(event%first, other%first)
+        event%last = max(event%last, other%last)
+        event%slip = event%slip + other%slip
+        event%spring = event%spring + other%spring
+        event%peak_velocity = max(event%peak_velocity, other%peak_velocity)
+        event%under_way = event%under_way .or. other%under_way
     end subroutine absorb
 
     !> Reads or writes the events under way.
@@ -188,6 +195,7 @@ contains
         type(archive), intent(inout) :: file
         integer :: i
 
+        call file%visit(self%unresolved)
         call file%visit(self%count)
         if (size(self%events) < self%count) then
             deallocate (self%events)
@@ -200,6 +208,7 @@ contains
                 call file%visit(event%first)
                 call file%visit(event%last)
                 call file%visit(event%slip)
+                call file%visit(event%spring)
                 call file%visit(event%peak_velocity)
                 call file%visit(event%under_way)
             end associate

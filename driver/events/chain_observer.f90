@@ -31,6 +31,8 @@ contains
         self%many = run%chain%n_blocks > 1
         self%area = run%area
         self%finder%slip_rate = run%chain%slip_rate
+        self%finder%drop = run%event_force()
+        if (.not. run%adaptive) self%finder%duration = 1.5_dp * run%dt
         self%finder%ring = run%chain%ends == ends_periodic
         allocate (self%finder%events(16))
     end subroutine prepare

@@ -31,6 +31,7 @@ module run_outcome
         integer :: chain_events = 0                !! in the catalogue of a chain, ended
         real(dp) :: largest_moment = 0.0_dp        !! of them [L^3]
         integer :: cut_events = 0                  !! there, but still under way at the end
+        integer :: unresolved = 0                  !! too short for the step to tell, and not there
         type(energy_balance) :: energy
         type(event_totals), allocatable :: pieces(:)
         type(friction_range), allocatable :: friction(:)   !! in the pieces

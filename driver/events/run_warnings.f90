@@ -60,7 +60,14 @@ contains
         character(len=240) :: text
         real(dp) :: lasts
 
-        if (sum(result%pieces%events) + result%chain_events == 0) return
+        if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
+        if (result%unresolved > 0) then
+            write (text, '(a, es9.2, a, i0, a)') 'the step dt =', run%dt, ' is too long for ', &
+                result%unresolved, ' slips of blocks, which begin and end within it: they are not &
+                &listed as events'
+            warnings = [warnings, run_warning('long_step', text)]
+            return
+        end if
         lasts = pi * sqrt(run%mass / run%stiffness)
         if (run%dt <= longest * lasts) return
         write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
@@ -78,6 +85,7 @@ contains
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
         real(dp) :: critical   ! damping [F T/L]
+        character(len=240) :: text
 
         if (result%energy%dissipated <= 0.0_dp .or. run%rigid_contact) return
         if (run%drive%largest_normal() * rate_weakening(run%props) &
@@ -86,10 +94,15 @@ contains
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
         critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(prop_alpha_t)))
         if (run%damping >= least * critical) return
-        warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
-            &begins, and the contact spring (alpha_t) rings undamped: periods and stress drops &
-            &depend on it. Take rho_infinity = 0 in &time, a damping, or contact = ''rigid'' in &
-            &&friction with adaptive steps')]
+        text = 'friction drops at once when slip begins, and the contact spring (alpha_t) rings &
+            &undamped: periods and stress drops depend on it. Take rho_infinity = 0 in &time'
+        if (run%chain%n_blocks == 1) then
+            text = trim(text) // ', a damping, or contact = ''rigid'' in &friction with adaptive &
+                &steps'
+        else
+            text = trim(text) // ' or a damping'
+        end if
+        warnings = [warnings, run_warning('undamped_contact', text)]
     end subroutine look_at_contact
 
     subroutine look_at_file(run, result, warnings)

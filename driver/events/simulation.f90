@@ -166,6 +166,7 @@ contains
         result%chain_events = live%chain_events%ended
         result%largest_moment = live%chain_events%largest_moment
         result%cut_events = live%chain_events%cut_short
+        result%unresolved = live%chain_events%finder%unresolved
         call live%steps%system%take_stock(live%state, result%energy)
         result%energy%at_start = live%energy_at_start
     end subroutine sum_up

@@ -84,10 +84,12 @@ contains
         self%speed = speed
     end subroutine give_sense
 
-    !> Takes in a step, and returns the events that are known to have ended in it.
-    pure subroutine follow(self, old, new, events)
+    !> Takes in a step, and returns the events that are known to have ended in it. After the last
+    !> step, an event has ended if the block no longer slips fast.
+    pure subroutine follow(self, old, new, last, events)
         class(event_finder), intent(inout) :: self
         type(moment), intent(in) :: old, new   !! `new` is the `old` of the next step
+        logical, intent(in) :: last            !! no step follows
         type(slip_event), allocatable, intent(inout) :: events(:)   !! they are added to these
         type(moment) :: before, now, turn
         real(dp) :: slip_rate, slack
@@ -119,7 +121,17 @@ contains
             self%reached = max(self%reached, now%drive)
         end if
         self%change = abs(new%force - old%force)
+        if (last .and. slip_rate <= limit(self)) call self%conclude(events)
     end subroutine follow
+
+    !> Slip rate that an event must exceed [L/T].
+    pure function limit(self) result(rate)
+        class(event_finder), intent(in) :: self
+        real(dp) :: rate
+
+        rate = self%slip_rate
+        if (rate <= 0.0_dp) rate = fast * self%driving
+    end function limit
 
     !> By how much does the force at a turn within a step exceed those at its ends? More than steps
     !> change it is not to be believed: velocities at the ends of long steps are uncertain.
@@ -169,7 +181,6 @@ contains
         type(event_finder), intent(inout) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step [L/T]
-        real(dp) :: limit
 
         self%fastest = max(self%fastest, now%velocity)
         self%slipping = max(self%slipping, slip_rate)
@@ -181,9 +192,7 @@ contains
         self%current%force_drop = self%peak%force - now%force
         self%current%slip = now%slip - self%peak%slip
         self%current%peak_velocity = self%fastest
-        limit = self%slip_rate
-        if (limit <= 0.0_dp) limit = fast * self%driving
-        self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit
+        self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit(self)
     end subroutine follow_fall
 
     !> The fall is over: adds it to the events if it is one.

@@ -4,12 +4,11 @@ module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use friction_mod, only : statev_slip
-    use law_facts, only : typical_coefficient
     use loading_programme, only : programme
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
     use run_outcome, only : event_totals
-    use run_settings, only : loading_sense, settings
+    use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : event_finder, moment, slip_event
     implicit none
@@ -40,14 +39,13 @@ contains
 
         self%drive = run%drive
         self%stiffness = run%stiffness
-        self%finder%drop = run%event_drop * run%area * typical_coefficient(run%props) &
-            * run%drive%largest_normal()
+        self%finder%drop = run%event_force()
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
-        call self%finder%give_sense(loading_sense(run), abs(run%drive%first_velocity()))
+        call self%finder%give_sense(run%loading_sense(), abs(run%drive%first_velocity()))
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
-        self%sense = senses(run%drive, loading_sense(run))
+        self%sense = senses(run%drive, run%loading_sense())
     end subroutine prepare
 
     !> In a hold the sense is that of the piece before.
@@ -72,7 +70,8 @@ contains
         integer :: i, k
 
         i = self%drive%piece(old%time)
-        call self%finder%follow(seen(self, old, i), seen(self, new, i), news%slip_events)
+        call self%finder%follow(seen(self, old, i), seen(self, new, i), news%last, &
+            news%slip_events)
         do k = 1, size(news%slip_events)
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))

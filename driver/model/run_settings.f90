@@ -2,13 +2,14 @@
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_settings, only : chain
+    use law_facts, only : typical_coefficient
     use loading_programme, only : programme
     use slider_system, only : initial_values, normal_motion
     use unit_names, only : units
     implicit none
     private
 
-    public :: loading_sense, next_row, settings
+    public :: next_row, settings
 
     type :: settings
         real(dp), allocatable :: props(:)   !! constants of the friction routine
@@ -41,20 +42,31 @@ module run_settings
         real(dp) :: table_limit = 10.0_dp   !! that the tables may take on disk [GB]
         type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results
+    contains
+        procedure :: event_force, loading_sense
     end type settings
 
 contains
 
+    !> The least fall of the drive spring's force that makes an event, of one block.
+    pure function event_force(self) result(force)
+        class(settings), intent(in) :: self
+        real(dp) :: force   !! [F]
+
+        force = self%event_drop * self%area * typical_coefficient(self%props) &
+            * self%drive%largest_normal()
+    end function event_force
+
     !> 1 or -1: the sense in which the drive moves first; of one that never does, that in which its
     !> spring pulls at the start, or else the block moves.
-    pure function loading_sense(run) result(sense)
-        type(settings), intent(in) :: run
+    pure function loading_sense(self) result(sense)
+        class(settings), intent(in) :: self
         integer :: sense
         real(dp) :: senses(3)
         integer :: i
 
         sense = 1
-        senses = [run%drive%first_velocity(), run%initial%spring_force, run%initial%velocity]
+        senses = [self%drive%first_velocity(), self%initial%spring_force, self%initial%velocity]
         do i = size(senses), 1, -1
             if (senses(i) > 0.0_dp) sense = 1
             if (senses(i) < 0.0_dp) sense = -1

@@ -14,7 +14,7 @@ module continuous_steps
         statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
     use law_facts, only : typical_coefficient
     use rosenbrock, only : rosenbrock_step
-    use run_settings, only : loading_sense, settings
+    use run_settings, only : settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
         memory, phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
         switches, unknowns, velocity
@@ -91,7 +91,7 @@ contains
             eq%rigid = run%rigid_contact
             eq%drive = run%drive
             eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
-            eq%forward = loading_sense(run)
+            eq%forward = run%loading_sense()
             self%implicit = eq%surface%traits%stiff
             ! as the traction vanishes, the slip rates of rate-and-state friction have no bound;
             ! what is left out is an impulse, and of the order of the square

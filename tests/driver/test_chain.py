@@ -236,6 +236,28 @@ class Catalogue(Chain):
 
         return [row(*event) for event in ended], [row(*event) for event in under_way]
 
+    def test_contact_springs_that_let_go_and_slips_within_one_step_are_no_events(self):
+        # Carlson and Langer's chain on undamped contact springs: each drops its traction in one step, again and again
+        text = """&friction law='static_kinetic' alpha_n=100 alpha_t=100 mu_s=1 mu_k=0 d_c=6 /
+&slider mass=1 stiffness=1 normal_traction=1 /
+&drive velocity=0.01 /
+&chain n_blocks=100 coupling=36 ends='periodic' scatter=0.01 /
+&time t_end=120 dt=0.01 /
+&output interval=100 /
+"""
+        result = self.run_text(text, '--no-plot')
+        rows = self.rows('case_out/case_events.csv')
+        self.assertEqual(result.returncode, 0)
+        self.assertGreater(len(rows), 10)
+        for row in rows:
+            self.assertGreater(float(row['duration']), 0.015)
+        self.assertIn('slips of blocks, which begin and end within it: they are not listed', result.stderr)
+        self.assertIn('balance of energy is open', result.stderr)
+        # what a contact spring holds moves no block, however small the limit of the step
+        quiet = self.run_text(text.replace('t_end=120', 't_end=60'), '--no-plot')
+        self.assertEqual(self.rows('case_out/case_events.csv'), [])
+        self.assertNotIn('slips of blocks', quiet.stderr)
+
     def test_what_is_under_way_at_the_end_is_listed_and_counted(self):
         said = self.run_chain({('time', 't_end'): '4.05'})
         rows = self.rows('case_out/case_events.csv')
