@@ -26,6 +26,12 @@ typedef int (*stickslip_watch)(double part, void *context);
  * Returns a stickslip_outcome. Snapshots of a chain's blocks (`fields`) and checkpoints are files, and are not written. */
 int stickslip_run(const char *name, const char *text, stickslip_watch watch, void *context, stickslip_result **result);
 
+/* Tells whether steady sliding of the slider of such an input is stable (docs/stability.md): the tables "stability", a row for
+ * each piece of the programme in which the drive moves (`stability`: 0 none, 1 stable, 2 neutral, 3 unstable), and
+ * "eigenvalues"; the report "reasons", why there is no steady sliding, a line a row. Arguments and values as above;
+ * STICKSLIP_FAILED where nothing slides steadily. */
+int stickslip_stability(const char *name, const char *text, stickslip_result **result);
+
 enum stickslip_outcome {
     STICKSLIP_DONE = 0,       /* the run reached its end */
     STICKSLIP_FAILED = 1,     /* it ended before: stickslip_report(result, "failure"); the tables hold what came before */
@@ -33,7 +39,7 @@ enum stickslip_outcome {
     STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL */
 };
 
-/* One of the tables of a run: "series", "events", "pieces" (of the programme), "summary" (one row).
+/* One of the tables of a run: "series", "events", "pieces" (of the programme), "summary" (one row); or of stickslip_stability.
  *   rows      receives the number of rows
  *   columns   receives the number of columns
  *   names     receives the names of the columns with commas between them

@@ -104,7 +104,9 @@ contains
         this%props = run%props
         call read_surface(this%props, this%surface, this%status)
         this%problem = ''
-        if (run%chain%n_blocks > 1) then
+        if (run%drive%measured_until < huge(1.0_dp)) then
+            this%problem = 'the drive follows a file'
+        else if (run%chain%n_blocks > 1) then
             this%problem = 'a chain of blocks: stability is that of one'
         else if (abs(run%drive%acceleration(piece)) > 0.0_dp) then
             this%problem = 'the velocity of the drive changes all the time'

@@ -5,6 +5,7 @@ module run_in_memory
         c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_null_pointer
+    use linear_stability, only : undecided
     use memory_recorder, only : memory_table, memory_watch
     use namelist_input, only : namelist_file, read_namelist_text
     use piece_table, only : piece_columns, piece_rows
@@ -15,18 +16,21 @@ module run_in_memory
     use run_warnings, only : find_warnings, run_warning
     use simulation, only : simulate, simulation_run, start_run
     use slider_system, only : slider_state
+    use stability_files, only : eigenvalue_columns, eigenvalue_row
+    use steady_answers, only : answer_columns, find_answers, steady_answer
     use summary, only : summary_columns, summary_row
     use verb_common, only : exit_bad_input, exit_done, exit_failed
     implicit none
     private
 
-    public :: c_free, c_report, c_run, c_table
+    public :: c_free, c_report, c_run, c_stability, c_table
 
-    !> What a run leaves. Texts end with a null character.
+    !> What a run, or the analysis of steady sliding, leaves. Texts end with a null character.
     type :: run_result
         type(memory_watch) :: found
         type(memory_table) :: pieces, summary
-        character(len=:), allocatable :: faults, failure, warnings
+        type(memory_table) :: steady, eigenvalues
+        character(len=:), allocatable :: faults, failure, warnings, reasons
     end type run_result
 
     abstract interface
@@ -148,6 +152,60 @@ contains
         this%failure = result%failure // c_null_char
     end subroutine run_text
 
+    !> `stickslip_stability` of include/stickslip_program.h.
+    function c_stability(name, text, result) result(status) bind(C, name='stickslip_stability')
+        type(c_ptr), value, intent(in) :: name, text   !! C texts
+        type(c_ptr), value, intent(in) :: result       !! place of a pointer
+        integer(c_int) :: status
+        type(c_ptr), pointer :: place
+        type(run_result), pointer :: this
+
+        status = friction_null_pointer
+        if (.not. c_associated(result)) return
+        call c_f_pointer(result, place)
+        place = c_null_ptr
+        if (.not. (c_associated(name) .and. c_associated(text))) return
+        allocate (this)
+        place = c_loc(this)
+        call stability_of_text(fortran_text(name), fortran_text(text), this, status)
+    end function c_stability
+
+    !> Reads, validates, and tells of steady sliding; `reasons` has a line a row.
+    subroutine stability_of_text(name, text, this, status)
+        character(len=*), intent(in) :: name, text
+        type(run_result), intent(inout) :: this
+        integer, intent(out) :: status   !! an exit status of the program
+        type(settings) :: run
+        type(steady_answer), allocatable :: answers(:)
+        integer :: i, k
+
+        !$omp critical (stickslip_reading)
+        call read_text(name, text, run, this%faults)
+        !$omp end critical (stickslip_reading)
+        this%failure = c_null_char
+        this%warnings = c_null_char
+        this%reasons = c_null_char
+        status = exit_bad_input
+        if (len(this%faults) > 1) return
+
+        call find_answers(run, answers)
+        call this%steady%start(answer_columns)
+        call this%eigenvalues%start(eigenvalue_columns)
+        status = exit_failed
+        do i = 1, size(answers)
+            call this%steady%add(answers(i)%numbers())
+            associate (result => answers(i)%result)
+                if (result%verdict /= undecided) status = exit_done
+                do k = 1, size(result%eigenvalues)
+                    call this%eigenvalues%add([real(i, dp), eigenvalue_row(result%eigenvalues(k))])
+                end do
+            end associate
+        end do
+        do i = size(answers), 1, -1
+            this%reasons = answers(i)%result%problem // new_line('a') // this%reasons
+        end do
+    end subroutine stability_of_text
+
     subroutine read_text(name, text, run, faults)
         character(len=*), intent(in) :: name, text
         type(settings), intent(out) :: run
@@ -203,6 +261,10 @@ contains
             call show(this%pieces, rows, columns, names, values)
         case ('summary')
             call show(this%summary, rows, columns, names, values)
+        case ('stability')
+            call show(this%steady, rows, columns, names, values)
+        case ('eigenvalues')
+            call show(this%eigenvalues, rows, columns, names, values)
         case default   ! none
         end select
     end function c_table
@@ -237,6 +299,8 @@ contains
             text = c_loc(this%failure)
         case ('warnings')
             text = c_loc(this%warnings)
+        case ('reasons')
+            if (allocated(this%reasons)) text = c_loc(this%reasons)
         case default   ! none
         end select
     end function c_report

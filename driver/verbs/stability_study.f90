@@ -2,15 +2,15 @@
 module stability_study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use command_line, only : command
-    use linear_stability, only : analyse, find_critical, stability, undecided
+    use linear_stability, only : undecided
     use namelist_input, only : namelist_file
     use platform, only : report
     use run_reader, only : read_settings
     use run_settings, only : settings
-    use stability_files, only : critical_keys, critical_list, criticals, draw_boundary, &
-        eigenvalue_columns, print_stability, stability_columns, stability_row, write_eigenvalues, &
-        write_map
+    use stability_files, only : draw_boundary, eigenvalue_columns, print_stability, &
+        stability_columns, stability_row, write_eigenvalues, write_map
     use stability_map, only : map_axis, map_stability, plane_map
+    use steady_answers, only : find_answers, steady_answer
     use steady_sliding, only : sliding_case, take_piece
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
@@ -103,59 +103,23 @@ contains
         end do
     end function key_names
 
-    !> The pieces of one programme in which the drive moves; the first one if it never does.
     subroutine tell_run(run, keys, aloud, into)
         type(settings), intent(in) :: run
         character(len=*), intent(in) :: keys   !! values of the keys of a sweep
         logical, intent(in) :: aloud
         type(tables), intent(inout) :: into
-        type(sliding_case) :: this
-        type(stability) :: result
-        type(critical_list) :: critical(criticals)
-        integer :: piece, pieces
-
-        pieces = size(run%drive%start)
-        do piece = 1, pieces
-            if (.not. abs(run%drive%velocity(piece)) > 0.0_dp .and. &
-                (piece > 1 .or. any(abs(run%drive%velocity) > 0.0_dp))) cycle
-            call take_piece(this, run, piece)
-            call analyse(this, result)
-            call find_all_critical(this, result, critical)
-            into%written = into%written + 1
-            if (result%verdict /= undecided) into%sliding = into%sliding + 1
-            call into%rows%write_line(keys // stability_row(this, piece, result, critical))
-            call write_eigenvalues(into%eigenvalues, into%written, result)
-            if (aloud) call print_stability(this, piece, pieces, result, critical)
-        end do
-    end subroutine tell_run
-
-    !> Critical values of the keys that are looked for, over decades around the case's own or, where
-    !> that is 0, around a value that its forces, stiffness and velocity make up.
-    subroutine find_all_critical(this, result, critical)
-        type(sliding_case), intent(inout) :: this
-        type(stability), intent(in) :: result
-        type(critical_list), intent(out) :: critical(criticals)
-        real(dp), parameter :: decades = 8.0_dp
-        integer, parameter :: steps = 128
-        real(dp) :: natural(criticals), middle, force
+        type(steady_answer), allocatable :: answers(:)
         integer :: i
 
-        force = this%area * result%contact%traction
-        natural = 0.0_dp
-        if (result%verdict /= undecided) natural = [this%stiffness, abs(this%velocity), &
-            force / abs(this%velocity), force**2 / (this%stiffness * this%velocity**2)]
-        do i = 1, criticals
-            middle = abs(this%value_of(trim(critical_keys(i))))
-            if (.not. middle > 0.0_dp) middle = natural(i)
-            critical(i)%range = middle * 10.0_dp**[-decades, decades]
-            if (middle > 0.0_dp .and. result%verdict /= undecided) then
-                call find_critical(this, trim(critical_keys(i)), critical(i)%range, steps, &
-                    critical(i)%found)
-            else
-                allocate (critical(i)%found(0))
-            end if
+        call find_answers(run, answers)
+        do i = 1, size(answers)
+            into%written = into%written + 1
+            if (answers(i)%result%verdict /= undecided) into%sliding = into%sliding + 1
+            call into%rows%write_line(keys // stability_row(answers(i)))
+            call write_eigenvalues(into%eigenvalues, into%written, answers(i)%result)
+            if (aloud) call print_stability(answers(i), size(answers))
         end do
-    end subroutine find_all_critical
+    end subroutine tell_run
 
     !> The boundary over the keys of the sweep or, without, over velocity and stiffness.
     subroutine show_boundary(wanted, plan, base)

@@ -9,7 +9,9 @@ from ._rates import Rates, SlipRates, rates, slip_rates
 from ._rate_state import RateStateFit, fit_rate_and_state
 from ._records import Record, RecordError
 from ._run import InputError, Run, RunError, run
+from ._stability import Stability, stability
 from ._update import Result, update
 
 __all__ = ['Fit', 'InputError', 'RateStateFit', 'Rates', 'Record', 'RecordError', 'Result', 'Run', 'RunError', 'SlipRates',
-           '__version__', 'fit', 'fit_rate_and_state', 'laws', 'message', 'rates', 'run', 'slip_rates', 'update']
+           'Stability', '__version__', 'fit', 'fit_rate_and_state', 'laws', 'message', 'rates', 'run', 'slip_rates', 'stability',
+           'update']

@@ -13,6 +13,8 @@ _library = load('stickslip_program')
 _watch_type = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_double, ctypes.c_void_p)
 _run = _library.stickslip_run
 _run.argtypes = [ctypes.c_char_p, ctypes.c_char_p, _watch_type, ctypes.c_void_p, ctypes.POINTER(ctypes.c_void_p)]
+_stability = _library.stickslip_stability
+_stability.argtypes = [ctypes.c_char_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_void_p)]
 _table = _library.stickslip_table
 _table.restype = ctypes.c_void_p
 _table.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_int),
@@ -66,6 +68,18 @@ def simulate(text: str, name: str = 'input', watch: Callable[[float], object] | 
             raise raised[0]
         tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in TABLES}
         return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
+    finally:
+        _free(result)
+
+
+def steady_sliding(text: str, name: str = 'input') -> Output:
+    """Stability of steady sliding on the text of a namelist: the tables 'stability' and 'eigenvalues', the reports 'faults' and
+    'reasons'."""
+    result = ctypes.c_void_p()
+    status = _stability(name.encode(), text.encode(), ctypes.byref(result))
+    try:
+        tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in ('stability', 'eigenvalues')}
+        return Output(status, tables, {report: _report(result, report.encode()).decode() for report in ('faults', 'reasons')})
     finally:
         _free(result)
 

@@ -249,6 +249,7 @@ class NoSteadySliding(Stability):
     def test_it_says_why(self):
         for text, why in ((namelist({('drive', 'velocity'): '0'}), 'the drive stands still'),
                           (namelist({('drive', 'normal_amplitude'): '1', ('drive', 'normal_frequency'): '1'}), 'normal traction changes'),
+                          ((INPUTS / 'from_file.nml').read_text().replace("'from_file.csv'", f"'{INPUTS / 'from_file.csv'}'"), 'follows a file'),
                           (namelist({('chain', 'n_blocks'): '3', ('chain', 'coupling'): '1'}), 'a chain of blocks'),
                           (OtherLaws.law(self, 'coulomb', {'mu': 0.3}, "'rigid'", mass=0.0, damping=0.0), 'it needs a mass')):
             result = self.run_text(text, '--no-plot', verb='stability')
