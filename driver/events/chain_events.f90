@@ -195,22 +195,15 @@ contains
         type(archive), intent(inout) :: file
         integer :: i
 
-        call file%visit(self%unresolved)
-        call file%visit(self%count)
+        call file%visit(self%unresolved, self%count)
         if (size(self%events) < self%count) then
             deallocate (self%events)
             allocate (self%events(self%count))
         end if
         do i = 1, self%count
             associate (event => self%events(i))
-                call file%visit(event%onset)
-                call file%visit(event%end)
-                call file%visit(event%first)
-                call file%visit(event%last)
-                call file%visit(event%slip)
-                call file%visit(event%spring)
-                call file%visit(event%peak_velocity)
-                call file%visit(event%under_way)
+                call file%visit(event%onset, event%end, event%first, event%last, event%slip)
+                call file%visit(event%spring, event%peak_velocity, event%under_way)
             end associate
         end do
     end subroutine visit

@@ -68,8 +68,7 @@ contains
         type(archive), intent(inout) :: file
 
         call self%finder%visit(file)
-        call file%visit(self%ended)
-        call file%visit(self%largest_moment)
+        call file%visit(self%ended, self%largest_moment)
     end subroutine visit
 
 end module chain_observer

@@ -100,10 +100,7 @@ contains
         class(friction_range), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%seen)
-        call file%visit(self%peak)
-        call file%visit(self%least)
-        call file%visit(self%last)
+        call file%visit(self%seen, self%peak, self%least, self%last)
     end subroutine visit
 
 end module piece_measures

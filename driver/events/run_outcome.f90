@@ -44,10 +44,7 @@ contains
         class(event_totals), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%events)
-        call file%visit(self%recurrences)
-        call file%visit(self%period)
-        call file%visit(self%force_drop)
+        call file%visit(self%events, self%recurrences, self%period, self%force_drop)
         call file%visit(self%peak_velocity)
     end subroutine visit
 

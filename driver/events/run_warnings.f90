@@ -2,8 +2,7 @@
 !> model means (docs/driver.md, warnings).
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : prop_alpha_t
-    use law_facts, only : rate_weakening
+    use friction_mod, only : friction_facts, law_facts, prop_alpha_t
     use run_outcome, only : outcome
     use run_settings, only : settings
     implicit none
@@ -84,11 +83,13 @@ contains
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
+        type(law_facts) :: law
         real(dp) :: critical   ! damping [F T/L]
         character(len=240) :: text
 
         if (result%energy%dissipated <= 0.0_dp .or. run%rigid_contact) return
-        if (run%drive%largest_normal() * rate_weakening(run%props) &
+        law = friction_facts(run%props)
+        if (run%drive%largest_normal() * law%rate_weakening &
             <= run%dt * run%props(prop_alpha_t)) return
         if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return

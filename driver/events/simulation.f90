@@ -180,9 +180,7 @@ contains
         call self%steps%visit(file)
         call self%slip_events%visit(file)
         call self%chain_events%visit(file)
-        call file%visit(self%taken)
-        call file%visit(self%snap_backs)
-        call file%visit(self%energy_at_start)
+        call file%visit(self%taken, self%snap_backs, self%energy_at_start)
     end subroutine visit
 
 end module simulation

@@ -252,45 +252,27 @@ contains
         class(event_finder), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%speed)
-        call file%visit(self%sense)
-        call file%visit(self%started)
-        call file%visit(self%reached)
-        call file%visit(self%change)
+        call file%visit(self%speed, self%sense, self%started, self%reached, self%change)
         call self%peak%visit(file)
         call self%trough%visit(file)
-        call file%visit(self%fastest)
-        call file%visit(self%slipping)
-        call file%visit(self%driving)
+        call file%visit(self%fastest, self%slipping, self%driving)
         call self%current%visit(file)
-        call file%visit(self%is_event)
-        call file%visit(self%any_before)
-        call file%visit(self%last_onset)
+        call file%visit(self%is_event, self%any_before, self%last_onset)
     end subroutine visit
 
     subroutine visit_moment(self, file)
         class(moment), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%time)
-        call file%visit(self%force)
-        call file%visit(self%slip)
-        call file%visit(self%velocity)
-        call file%visit(self%rate)
-        call file%visit(self%drive)
+        call file%visit(self%time, self%force, self%slip, self%velocity, self%rate, self%drive)
     end subroutine visit_moment
 
     subroutine visit_event(self, file)
         class(slip_event), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%onset)
-        call file%visit(self%duration)
-        call file%visit(self%force_drop)
-        call file%visit(self%slip)
-        call file%visit(self%peak_velocity)
-        call file%visit(self%recurrence)
-        call file%visit(self%first)
+        call file%visit(self%onset, self%duration, self%force_drop, self%slip, self%peak_velocity)
+        call file%visit(self%recurrence, self%first)
     end subroutine visit_event
 
 end module slip_events

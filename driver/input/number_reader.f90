@@ -2,24 +2,15 @@
 module number_reader
     use, intrinsic :: ieee_arithmetic, only : ieee_get_halting_mode, ieee_overflow, &
         ieee_positive_inf, ieee_quiet_nan, ieee_set_halting_mode, ieee_value
-    use, intrinsic :: iso_c_binding, only : c_char, c_double, c_intptr_t, c_loc, c_null_char, c_ptr
+    use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_null_char, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use c_library, only : c_strtod
     implicit none
     private
 
     public :: read_number
 
     character(len=*), parameter :: digits = '0123456789'
-
-    interface
-        function c_strtod(text, end) result(value) bind(C, name='strtod')
-            import :: c_char, c_double, c_ptr
-            implicit none
-            character(kind=c_char), intent(in) :: text(*)
-            type(c_ptr), intent(out) :: end
-            real(c_double) :: value
-        end function c_strtod
-    end interface
 
 contains
 

@@ -2,14 +2,12 @@
 !> `props`.
 module law_facts
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : facts => law_facts, friction_coefficient_change, friction_facts, &
-        friction_healing_rate, friction_internal_variable, friction_law_of, library_variable => &
-        internal_variable, statev_mu, statev_r, statev_size
+    use friction_mod, only : facts => law_facts, friction_facts, friction_internal_variable, &
+        friction_law_of, library_variable => internal_variable
     implicit none
     private
 
-    public :: coefficient_error, coefficient_range, healing_rate, internal_variable, has_r, &
-        rate_weakening, typical_coefficient
+    public :: has_r, internal_variable, typical_coefficient
 
 contains
 
@@ -43,52 +41,5 @@ contains
         law = friction_facts(props)
         mu = law%typical_coefficient
     end function typical_coefficient
-
-    !> Between which coefficients the friction of a law with an R stays: the kinetic and the static
-    !> one.
-    pure function coefficient_range(props) result(bounds)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: bounds(2)              !! [-]
-        type(facts) :: law
-
-        law = friction_facts(props)
-        bounds = [law%kinetic_coefficient, law%largest_coefficient]
-    end function coefficient_range
-
-    !> How fast the friction coefficient falls with the slip rate when slip begins [T/L]; 0 under
-    !> laws whose friction does not depend on it then.
-    pure function rate_weakening(props) result(slope)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: slope                  !! >= 0
-        type(facts) :: law
-
-        law = friction_facts(props)
-        slope = law%rate_weakening
-    end function rate_weakening
-
-    !> Growth of the friction coefficient of a contact at rest [1/T].
-    pure function healing_rate(props, mu) result(rate)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp), intent(in) :: mu         !! friction coefficient [-]
-        real(dp) :: rate
-        real(dp) :: statev(statev_size)
-
-        statev = 0.0_dp
-        statev(statev_mu) = mu
-        rate = friction_healing_rate(props, statev)
-    end function healing_rate
-
-    !> What errors of the state variables of blocks mean to their friction coefficients later, in
-    !> first order.
-    pure function coefficient_error(props, statev, errors) result(error)
-        real(dp), intent(in) :: props(:)                     !! constants of the friction routine
-        real(dp), intent(in) :: statev(:, :), errors(:, :)   !! state variables, one row a block
-        real(dp) :: error(size(errors, 1))                   !! [-]
-        type(facts) :: law
-
-        law = friction_facts(props)
-        error = friction_coefficient_change(law%traits, statev(:, statev_r), &
-            errors(:, statev_mu), errors(:, statev_r))
-    end function coefficient_error
 
 end module law_facts

@@ -419,14 +419,8 @@ contains
         class(slider_state), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%time)
-        call file%visit(self%drive)
-        call file%visit(self%normal)
-        call file%visit(self%load)
-        call file%visit(self%v_n)
-        call file%visit(self%a_n)
-        call file%visit(self%drive_work)
-        call file%visit(self%damped)
+        call file%visit(self%time, self%drive, self%normal, self%load, self%v_n, self%a_n)
+        call file%visit(self%drive_work, self%damped)
         call file%visit(self%x)
         call file%visit(self%v)
         call file%visit(self%a)

@@ -4,8 +4,8 @@
 module picture
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use child_process, only : run_command
+    use embedded_texts, only : get_text
     use number_text, only : short_text
-    use picture_scripts, only : get_script
     use platform, only : have_command, shell_word
     use text_file, only : output_file
     use unit_names, only : units
@@ -88,7 +88,7 @@ contains
         integer :: i
 
         problem = ''
-        call get_script(script, lines)
+        call get_text(script, lines)
         call file%create(directory // '/' // stem // '.gp')
         call file%write_line('# gnuplot ' // stem // '.gp')
         call file%write_line(self%text)

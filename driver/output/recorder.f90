@@ -159,13 +159,9 @@ contains
         series = self%series%bytes
         events = self%events%bytes
         fields = self%fields%file%bytes
-        call file%visit(self%rows)
-        call file%visit(self%clock%steps)
-        call file%visit(self%fields_due)
+        call file%visit(self%rows, self%clock%steps, self%fields_due)
         call self%picture%visit(file)
-        call file%visit(series)
-        call file%visit(events)
-        call file%visit(fields)
+        call file%visit(series, events, fields)
         if (file%is_read()) call self%go_on(series, events, fields)
     end subroutine visit
 

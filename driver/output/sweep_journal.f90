@@ -4,6 +4,7 @@
 module sweep_journal
     use platform, only : rename_file
     use text_file, only : output_file
+    use whole_file, only : read_whole_file
     implicit none
     private
 
@@ -59,13 +60,13 @@ contains
         character(len=*), intent(in) :: name
         character(len=:), allocatable, intent(out) :: input
         type(text_line), allocatable, intent(out) :: rows(:)
-        character(len=:), allocatable :: text
+        character(len=:), allocatable :: text, problem
         type(text_line) :: line
         integer :: start, length
 
         input = ''
         allocate (rows(0))
-        call read_file(name, text)
+        call read_whole_file(name, text, problem)
         start = 1
         do
             length = index(text(start:), new_line('a')) - 1
@@ -79,22 +80,6 @@ contains
             end if
         end do
     end subroutine read_journal
-
-    subroutine read_file(name, text)
-        character(len=*), intent(in) :: name
-        character(len=:), allocatable, intent(out) :: text   !! empty if there is no such file
-        integer :: unit, status, length
-
-        length = 0
-        open (newunit=unit, file=name, status='old', action='read', access='stream', &
-            form='unformatted', iostat=status)
-        if (status == 0) inquire (unit=unit, size=length)
-        allocate (character(len=max(0, length)) :: text)
-        if (status /= 0) return
-        read (unit, iostat=status) text
-        if (status /= 0) text = ''
-        close (unit)
-    end subroutine read_file
 
     subroutine write_marked(file, input)
         type(output_file), intent(inout) :: file

@@ -94,9 +94,7 @@ contains
         class(thinned), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%stretch)
-        call file%visit(self%count)
-        call file%visit(self%filled)
+        call file%visit(self%stretch, self%count, self%filled)
         call file%visit(self%rows(:, :self%kept()))
     end subroutine visit
 

@@ -108,9 +108,7 @@ contains
         class(integrator), intent(inout) :: self
         type(archive), intent(inout) :: file
 
-        call file%visit(self%rejected)
-        call file%visit(self%iterations)
-        call file%visit(self%most_iterations)
+        call file%visit(self%rejected, self%iterations, self%most_iterations)
     end subroutine visit_counts
 
     subroutine count_iterations(self, iterations)

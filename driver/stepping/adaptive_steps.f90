@@ -8,9 +8,9 @@ module adaptive_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
-    use friction_mod, only : friction_message, friction_no_convergence, prop_alpha_n, &
-        statev_dissipation, statev_mu, statev_r, statev_slip, statev_status, statev_u_n
-    use law_facts, only : coefficient_error, coefficient_range, has_r, typical_coefficient
+    use friction_mod, only : friction_coefficient_change, friction_facts, friction_message, &
+        friction_no_convergence, law_facts, prop_alpha_n, statev_dissipation, statev_mu, statev_r, &
+        statev_slip, statev_status, statev_u_n
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
@@ -29,6 +29,7 @@ module adaptive_steps
 
     type, extends(integrator) :: adaptive
         class(newmark), allocatable :: method
+        type(law_facts) :: law
         real(dp) :: dt = 0.0_dp        !! next to try [T]
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
         real(dp) :: every = 0.0_dp     !! steps end at multiples of this time, unless it is 0 [T]
@@ -63,7 +64,8 @@ contains
         self%every = run%every
         self%order = run%order
         self%pressing = run%area * run%drive%largest_normal()
-        self%tolerated = run%rtol * max(typical_coefficient(run%props) * self%pressing, &
+        self%law = friction_facts(run%props)
+        self%tolerated = run%rtol * max(self%law%typical_coefficient * self%pressing, &
             tiny(1.0_dp) / epsilon(1.0_dp))
         self%part = 1.0_dp / (2.0_dp**self%order - 1.0_dp)
         self%middle = start
@@ -76,8 +78,7 @@ contains
         type(archive), intent(inout) :: file
 
         call self%visit_counts(file)
-        call file%visit(self%dt)
-        call file%visit(self%last_error)
+        call file%visit(self%dt, self%last_error)
     end subroutine visit
 
     subroutine why_stopped(self, status, why)
@@ -217,9 +218,10 @@ contains
             error = maxval(max(s%stiffness * abs(e%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(e%v), &
                 s%stiffness * abs(e%statev(:, statev_slip))))
-            error = max(error, self%pressing * maxval(coefficient_error(s%props, &
-                self%ends(2)%statev, e%statev)))
-            if (s%across%free()) error = max(error, typical_coefficient(s%props) * s%area &
+            error = max(error, self%pressing * maxval(friction_coefficient_change( &
+                self%law%traits, self%ends(2)%statev(:, statev_r), e%statev(:, statev_mu), &
+                e%statev(:, statev_r))))
+            if (s%across%free()) error = max(error, self%law%typical_coefficient * s%area &
                 * s%props(prop_alpha_n) * max(abs(e%statev(1, statev_u_n)), abs(e%v_n) &
                 * sqrt(s%across%mass / (s%across%stiffness + s%area * s%props(prop_alpha_n)))))
         end associate
@@ -234,7 +236,6 @@ contains
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
         real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
-        real(dp) :: bounds(2)
 
         associate (finest_end => self%ends(2))
             new%time = finest_end%time
@@ -249,9 +250,8 @@ contains
             end if
             new%statev(:, statev_status) = finest_end%statev(:, statev_status)
             associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
-                if (has_r(self%system%props)) then
-                    bounds = coefficient_range(self%system%props)
-                    mu = min(bounds(2), max(bounds(1), mu))
+                if (self%law%traits%memory == 1) then
+                    mu = min(self%law%largest_coefficient, max(self%law%kinetic_coefficient, mu))
                     r = min(1.0_dp, max(0.0_dp, r))
                 else
                     mu = max(0.0_dp, mu)

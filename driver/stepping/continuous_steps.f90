@@ -743,11 +743,7 @@ contains
 
         call self%visit_counts(file)
         call file%visit(self%y)
-        call file%visit(self%dt)
-        call file%visit(self%implicit)
-        call file%visit(self%stiff)
-        call file%visit(self%calm)
-        call file%visit(self%equations%phase)
+        call file%visit(self%dt, self%implicit, self%stiff, self%calm, self%equations%phase)
         call file%visit(self%equations%sense)
         self%known = .false.
     end subroutine visit

@@ -82,8 +82,7 @@ contains
         type(archive), intent(inout) :: file
 
         call self%visit_counts(file)
-        call file%visit(self%passed)
-        call file%visit(self%parts)
+        call file%visit(self%passed, self%parts)
     end subroutine visit
 
     subroutine why_stopped(self, status, why)

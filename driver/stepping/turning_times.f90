@@ -1,8 +1,7 @@
 !> When blocks turn round: when slip begins or ends, and friction has a kink.
 module turning_times
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : statev_mu, statev_u_et
-    use law_facts, only : healing_rate
+    use friction_mod, only : friction_healing_rate, statev_mu, statev_size, statev_u_et
     use slider_system, only : slider, slider_state
     implicit none
     private
@@ -19,11 +18,14 @@ contains
         integer, intent(in) :: i
         real(dp), intent(in) :: loading   !! growth of the normal traction, part of it [1/T]
         real(dp) :: velocity              !! [L/T]
+        real(dp) :: resting(statev_size)   ! state variables of the block at rest
 
         velocity = 0.0_dp
         associate (mu => state%statev(i, statev_mu))
+            resting = 0.0_dp
+            resting(statev_mu) = mu
             if (mu > 0.0_dp) velocity = state%statev(i, statev_u_et) &
-                * (healing_rate(system%props, mu) / mu + loading)
+                * (friction_healing_rate(system%props, resting) / mu + loading)
         end associate
     end function sticking_velocity
 

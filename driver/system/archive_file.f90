@@ -20,10 +20,8 @@ module archive_file
         character(len=:), allocatable :: name
     contains
         procedure :: create, open, close, is_read
-        procedure, private :: visit_real, visit_reals, visit_table, visit_integer, &
-            visit_integer64, visit_logical, visit_words
-        generic :: visit => visit_real, visit_reals, visit_table, visit_integer, visit_integer64, &
-            visit_logical
+        procedure, private :: visit_fields, visit_reals, visit_table, visit_words
+        generic :: visit => visit_fields, visit_reals, visit_table
         procedure :: visit_list
     end type archive
 
@@ -141,45 +139,45 @@ contains
         call mix(chunk, self%checksum)
     end subroutine visit_words
 
-    subroutine visit_integer64(self, number)
+    !> Numbers and truth values, as many as fit in a line.
+    subroutine visit_fields(self, a, b, c, d, e, f, g)
         class(archive), intent(inout) :: self
-        integer(int64), intent(inout) :: number
+        class(*), intent(inout) :: a
+        class(*), intent(inout), optional :: b, c, d, e, f, g
+
+        call visit_field(self, a)
+        if (present(b)) call visit_field(self, b)
+        if (present(c)) call visit_field(self, c)
+        if (present(d)) call visit_field(self, d)
+        if (present(e)) call visit_field(self, e)
+        if (present(f)) call visit_field(self, f)
+        if (present(g)) call visit_field(self, g)
+    end subroutine visit_fields
+
+    subroutine visit_field(self, field)
+        type(archive), intent(inout) :: self
+        class(*), intent(inout) :: field
         integer(int64) :: chunk(1)
 
-        chunk = number
-        call self%visit_words(chunk)
-        number = chunk(1)
-    end subroutine visit_integer64
-
-    subroutine visit_integer(self, number)
-        class(archive), intent(inout) :: self
-        integer, intent(inout) :: number
-        integer(int64) :: chunk(1)
-
-        chunk = number
-        call self%visit_words(chunk)
-        number = int(chunk(1))
-    end subroutine visit_integer
-
-    subroutine visit_logical(self, yes)
-        class(archive), intent(inout) :: self
-        logical, intent(inout) :: yes
-        integer(int64) :: chunk(1)
-
-        chunk = merge(1, 0, yes)
-        call self%visit_words(chunk)
-        yes = chunk(1) /= 0
-    end subroutine visit_logical
-
-    subroutine visit_real(self, number)
-        class(archive), intent(inout) :: self
-        real(dp), intent(inout) :: number
-        integer(int64) :: chunk(1)
-
-        chunk = transfer(number, chunk)
-        call self%visit_words(chunk)
-        number = transfer(chunk(1), number)
-    end subroutine visit_real
+        select type (field)
+        type is (real(dp))
+            chunk = transfer(field, chunk)
+            call self%visit_words(chunk)
+            field = transfer(chunk(1), field)
+        type is (integer)
+            chunk = field
+            call self%visit_words(chunk)
+            field = int(chunk(1))
+        type is (integer(int64))
+            chunk = field
+            call self%visit_words(chunk)
+            field = chunk(1)
+        type is (logical)
+            chunk = merge(1, 0, field)
+            call self%visit_words(chunk)
+            field = chunk(1) /= 0
+        end select
+    end subroutine visit_field
 
     !> An array whose size the reader knows.
     subroutine visit_reals(self, numbers)

@@ -5,6 +5,8 @@ module child_process
     use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_long, c_null_char, c_null_ptr, &
         c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, output_unit, real64
+    use c_library, only : c_close, c_end, c_execv, c_fork, c_kill, c_pipe, c_poll, c_read, &
+        c_wait, c_waitpid, c_write
     use platform, only : interrupted, seconds
     implicit none
     private
@@ -18,92 +20,6 @@ module child_process
     contains
         procedure :: start, running, tell_and_end
     end type child
-
-    interface
-        function c_fork() result(id) bind(C, name='fork')
-            import :: c_int
-            implicit none
-            integer(c_int) :: id
-        end function c_fork
-
-        function c_wait(status) result(id) bind(C, name='wait')
-            import :: c_int
-            implicit none
-            integer(c_int), intent(out) :: status
-            integer(c_int) :: id
-        end function c_wait
-
-        function c_pipe(ends) result(status) bind(C, name='pipe')
-            import :: c_int
-            implicit none
-            integer(c_int), intent(out) :: ends(2)
-            integer(c_int) :: status
-        end function c_pipe
-
-        function c_close(descriptor) result(status) bind(C, name='close')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: descriptor
-            integer(c_int) :: status
-        end function c_close
-
-        function c_read(descriptor, buffer, length) result(got) bind(C, name='read')
-            import :: c_char, c_int, c_size_t
-            implicit none
-            integer(c_int), value, intent(in) :: descriptor
-            character(kind=c_char), intent(inout) :: buffer(*)
-            integer(c_size_t), value, intent(in) :: length
-            integer(c_size_t) :: got   ! ssize_t, as wide and signed here
-        end function c_read
-
-        function c_write(descriptor, text, length) result(written) bind(C, name='write')
-            import :: c_char, c_int, c_size_t
-            implicit none
-            integer(c_int), value, intent(in) :: descriptor
-            character(kind=c_char), intent(in) :: text(*)
-            integer(c_size_t), value, intent(in) :: length
-            integer(c_size_t) :: written
-        end function c_write
-
-        function c_waitpid(id, status, options) result(ended) bind(C, name='waitpid')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: id, options
-            integer(c_int), intent(out) :: status
-            integer(c_int) :: ended
-        end function c_waitpid
-
-        function c_execv(path, arguments) result(status) bind(C, name='execv')
-            import :: c_char, c_int, c_ptr
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            type(c_ptr), intent(in) :: arguments(*)
-            integer(c_int) :: status
-        end function c_execv
-
-        function c_kill(id, signal) result(status) bind(C, name='kill')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: id, signal
-            integer(c_int) :: status
-        end function c_kill
-
-        function c_poll(nothing, number, milliseconds) result(status) bind(C, name='poll')
-            import :: c_int, c_long, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: nothing
-            integer(c_long), value, intent(in) :: number
-            integer(c_int), value, intent(in) :: milliseconds
-            integer(c_int) :: status
-        end function c_poll
-
-        !> Ends without touching the buffers of files, which are the parent's too.
-        subroutine c_end(status) bind(C, name='_exit')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: status
-        end subroutine c_end
-    end interface
 
 contains
 

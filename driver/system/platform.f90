@@ -1,8 +1,10 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
-    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_int64_t, c_loc, &
+    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_loc, &
         c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
+    use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_mkdir, c_puts, &
+        c_readlink, c_remove, c_rename, c_signal, c_truncate
     implicit none
     private
 
@@ -16,104 +18,6 @@ module platform
     integer, protected, public :: report = output_unit
 
     integer(c_int), parameter :: sigint = 2_c_int, sigterm = 15_c_int
-
-    interface
-        function c_execv(path, arguments) result(status) bind(C, name='execv')
-            import :: c_char, c_int, c_ptr
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            type(c_ptr), intent(in) :: arguments(*)
-            integer(c_int) :: status
-        end function c_execv
-
-        function c_readlink(path, buffer, length) result(got) bind(C, name='readlink')
-            import :: c_char, c_size_t
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            character(kind=c_char), intent(inout) :: buffer(*)
-            integer(c_size_t), value, intent(in) :: length
-            integer(c_size_t) :: got   ! ssize_t, as wide and signed here
-        end function c_readlink
-
-        function c_isatty(descriptor) result(answer) bind(C, name='isatty')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: descriptor
-            integer(c_int) :: answer
-        end function c_isatty
-
-        function c_mkdir(path, mode) result(status) bind(C, name='mkdir')
-            import :: c_char, c_int
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            integer(c_int), value, intent(in) :: mode
-            integer(c_int) :: status
-        end function c_mkdir
-
-        function c_access(path, mode) result(status) bind(C, name='access')
-            import :: c_char, c_int
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            integer(c_int), value, intent(in) :: mode
-            integer(c_int) :: status
-        end function c_access
-
-        function c_truncate(path, length) result(status) bind(C, name='truncate')
-            import :: c_char, c_int, c_int64_t
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            integer(c_int64_t), value, intent(in) :: length
-            integer(c_int) :: status
-        end function c_truncate
-
-        function c_rename(old, new) result(status) bind(C, name='rename')
-            import :: c_char, c_int
-            implicit none
-            character(kind=c_char), intent(in) :: old(*), new(*)
-            integer(c_int) :: status
-        end function c_rename
-
-        function c_remove(path) result(status) bind(C, name='remove')
-            import :: c_char, c_int
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            integer(c_int) :: status
-        end function c_remove
-
-        function c_signal(number, handler) result(before) bind(C, name='signal')
-            import :: c_funptr, c_int
-            implicit none
-            integer(c_int), value, intent(in) :: number
-            type(c_funptr), value, intent(in) :: handler
-            type(c_funptr) :: before
-        end function c_signal
-
-        function c_puts(text) result(status) bind(C, name='puts')
-            import :: c_char, c_int
-            implicit none
-            character(kind=c_char), intent(in) :: text(*)
-            integer(c_int) :: status
-        end function c_puts
-
-        function c_fflush(stream) result(status) bind(C, name='fflush')
-            import :: c_int, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_int) :: status
-        end function c_fflush
-
-        subroutine c_end(status) bind(C, name='_exit')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: status
-        end subroutine c_end
-
-        subroutine c_exit(status) bind(C, name='exit')
-            import :: c_int
-            implicit none
-            integer(c_int), value, intent(in) :: status
-        end subroutine c_exit
-    end interface
 
 contains
 
@@ -251,25 +155,20 @@ contains
     subroutine replace_program(path, arguments)
         character(len=*), intent(in) :: path
         character(len=*), intent(in) :: arguments(:)   !! trailing blanks do not count
-        character(kind=c_char), target :: words(len(arguments) + 1, size(arguments))
-        type(c_ptr) :: list(size(arguments) + 2)
-        character(kind=c_char), target :: name(len(path) + 1)
+        character(kind=c_char, len=max(len(path), len(arguments)) + 1), target :: &
+            words(0:size(arguments))
+        type(c_ptr) :: list(0:size(arguments) + 1)
         integer(c_int) :: ignored
-        integer :: i, j
+        integer :: i
 
-        do j = 1, len(path)
-            name(j) = path(j:j)
-        end do
-        name(len(path) + 1) = c_null_char
-        list(1) = c_loc(name)
+        words(0) = path // c_null_char
         do i = 1, size(arguments)
-            do j = 1, len_trim(arguments(i))
-                words(j, i) = arguments(i)(j:j)
-            end do
-            words(len_trim(arguments(i)) + 1, i) = c_null_char
-            list(i + 1) = c_loc(words(:, i))
+            words(i) = trim(arguments(i)) // c_null_char
         end do
-        list(size(list)) = c_null_ptr
+        list = c_null_ptr
+        do i = 0, size(arguments)
+            list(i) = c_loc(words(i))
+        end do
         flush (output_unit)
         flush (error_unit)
         ignored = c_execv(path // c_null_char, list)

@@ -1,9 +1,10 @@
 !> Files for results, text or numbers, through the C library: gfortran's own output takes a full
 !> disk for success.
 module text_file
-    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
-        c_ptr, c_size_t
+    use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_null_ptr, c_ptr, &
+        c_size_t
     use, intrinsic :: iso_fortran_env, only : int64, real64
+    use c_library, only : c_fclose, c_fflush, c_fopen, c_fwrite
     use platform, only : truncate_file
     implicit none
     private
@@ -23,38 +24,6 @@ module text_file
         procedure :: create, go_on, write_line, write_numbers, flush_lines, finish
         procedure, private :: put
     end type output_file
-
-    interface
-        function c_fopen(name, mode) result(stream) bind(C, name='fopen')
-            import :: c_char, c_ptr
-            implicit none
-            character(kind=c_char), intent(in) :: name(*), mode(*)
-            type(c_ptr) :: stream
-        end function c_fopen
-
-        function c_fwrite(text, item_size, items, stream) result(written) bind(C, name='fwrite')
-            import :: c_char, c_ptr, c_size_t
-            implicit none
-            character(kind=c_char), intent(in) :: text(*)
-            integer(c_size_t), value, intent(in) :: item_size, items
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_size_t) :: written
-        end function c_fwrite
-
-        function c_fflush(stream) result(status) bind(C, name='fflush')
-            import :: c_int, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_int) :: status
-        end function c_fflush
-
-        function c_fclose(stream) result(status) bind(C, name='fclose')
-            import :: c_int, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_int) :: status
-        end function c_fclose
-    end interface
 
 contains
 

@@ -1,8 +1,8 @@
 !> Reads text files whole, through the C library: from disks, pipes and devices alike. Byte-order
 !> marks, UTF-16 and the line ends of other systems are turned into plain lines of UTF-8.
 module whole_file
-    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_ptr, &
-        c_size_t
+    use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_ptr, c_size_t
+    use c_library, only : c_fclose, c_ferror, c_fopen, c_fread
     use platform, only : is_directory
     implicit none
     private
@@ -13,38 +13,6 @@ module whole_file
     character(len=*), parameter :: little_endian_mark = char(255) // char(254)
     character(len=*), parameter :: big_endian_mark = char(254) // char(255)
     character(len=1), parameter :: carriage_return = achar(13), line_feed = achar(10)
-
-    interface
-        function c_fopen(name, mode) result(stream) bind(C, name='fopen')
-            import :: c_char, c_ptr
-            implicit none
-            character(kind=c_char), intent(in) :: name(*), mode(*)
-            type(c_ptr) :: stream
-        end function c_fopen
-
-        function c_fread(buffer, item_size, items, stream) result(taken) bind(C, name='fread')
-            import :: c_char, c_ptr, c_size_t
-            implicit none
-            character(kind=c_char), intent(inout) :: buffer(*)
-            integer(c_size_t), value, intent(in) :: item_size, items
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_size_t) :: taken
-        end function c_fread
-
-        function c_ferror(stream) result(status) bind(C, name='ferror')
-            import :: c_int, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_int) :: status
-        end function c_ferror
-
-        function c_fclose(stream) result(status) bind(C, name='fclose')
-            import :: c_int, c_ptr
-            implicit none
-            type(c_ptr), value, intent(in) :: stream
-            integer(c_int) :: status
-        end function c_fclose
-    end interface
 
 contains
 

@@ -2,8 +2,9 @@
 !> include/stickslip_program.h.
 module run_in_memory
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, &
-        c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
+        c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use c_library, only : c_strlen
     use friction_mod, only : friction_null_pointer
     use linear_stability, only : undecided
     use memory_recorder, only : memory_table, memory_watch
@@ -42,16 +43,6 @@ module run_in_memory
             type(c_ptr), value, intent(in) :: context
             integer(c_int) :: stop_now
         end function watch_function
-    end interface
-
-    interface
-        !> Of the C library.
-        pure function c_strlen(text) result(length) bind(C, name='strlen')
-            import :: c_ptr, c_size_t
-            implicit none
-            type(c_ptr), value, intent(in) :: text
-            integer(c_size_t) :: length
-        end function c_strlen
     end interface
 
     !> Tells the caller how far the run has come, and ends it if the caller wants so.

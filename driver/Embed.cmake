@@ -1,6 +1,6 @@
-# The scripts of the pictures as a Fortran module: embed_scripts(FILE SCRIPT...) writes FILE, in which
-# `get_script` finds each script by its name, so that the program needs no folder beside it.
-function(embed_scripts file)
+# Text files as a Fortran module: embed_texts(FILE TEXT...) writes FILE, in which `get_text` finds each
+# text by its name, so that the program needs no folder beside it.
+function(embed_texts file)
     set(cases "")
     set(texts "")
     foreach(path ${ARGN})
@@ -13,17 +13,17 @@ function(embed_scripts file)
         string(APPEND texts "    character(len=*), parameter :: ${name}(*) = [character(len=128) :: &\n        '${text}']\n\n")
         string(APPEND cases "        case ('${name}')\n            lines = ${name}\n")
     endforeach()
-    file(CONFIGURE OUTPUT ${file} CONTENT [[!> The scripts of output/pictures, made by CMake.
-module picture_scripts
+    file(CONFIGURE OUTPUT ${file} CONTENT [[!> The help and the scripts of the pictures, made by CMake.
+module embedded_texts
     implicit none
     private
 
-    public :: get_script
+    public :: get_text
 
 @texts@contains
 
-    !> The lines of a script; none if it is unknown.
-    pure subroutine get_script(name, lines)
+    !> The lines of a text; none if it is unknown.
+    pure subroutine get_text(name, lines)
         character(len=*), intent(in) :: name
         character(len=128), allocatable, intent(out) :: lines(:)
 
@@ -31,8 +31,8 @@ module picture_scripts
 @cases@        case default
             allocate (lines(0))
         end select
-    end subroutine get_script
+    end subroutine get_text
 
-end module picture_scripts
+end module embedded_texts
 ]] @ONLY)
 endfunction()
