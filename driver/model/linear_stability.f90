@@ -145,7 +145,7 @@ contains
         problem = ''
         jacobian = 0.0_dp
         n = size(packed(this, contact, rates))
-        if (n == 0) problem = 'the block has no motion of its own'
+        if (n == 0) problem = 'disturbances vanish at once: nothing has inertia, damping or memory'
         do i = 1, n
             call rates_of(this, contact, unpacked(this, contact, [(merge(1.0_dp, 0.0_dp, j == i), &
                 j = 1, n)]), rates, failed)

@@ -49,7 +49,7 @@ module slider_system
         real(dp) :: walls(2) = 0.0_dp                !! where they stand [L]
         real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
                                            !! programme; all 1 if not allocated [-]
-        type(normal_motion) :: across
+        type(normal_motion) :: across = normal_motion()
     contains
         procedure :: add_coupling, coupling_energy
         procedure :: account, carried_pressure, pull, push

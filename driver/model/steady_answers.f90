@@ -64,6 +64,7 @@ contains
         type(steady_answer), intent(inout) :: answer
         real(dp), parameter :: decades = 8.0_dp
         integer, parameter :: steps = 128
+        real(dp), parameter :: nothing = 1.0e-150_dp   !! too small to look around
         real(dp) :: natural(criticals), middle, force
         integer :: i
         logical :: slides
@@ -80,7 +81,7 @@ contains
                 middle = abs(answer%this%value_of(trim(key)))
                 if (.not. middle > 0.0_dp) middle = natural(i)
                 list%range = middle * 10.0_dp**[-decades, decades]
-                if (middle > 0.0_dp .and. slides) then
+                if (middle > nothing .and. slides) then
                     call find_critical(answer%this, trim(key), list%range, steps, list%found)
                 else
                     allocate (list%found(0))

@@ -208,6 +208,7 @@ contains
         type(contact_response), intent(out) :: contact
         character(len=:), allocatable, intent(out) :: problem
         type(law_about) :: law
+        real(dp), parameter :: nothing = 1.0e-100_dp   !! that friction changes with the slip rate
         real(dp) :: by_rate
 
         problem = this%problem
@@ -232,7 +233,7 @@ contains
             contact%capped = contact%traction >= this%surface%tau_max
             call differentiate(known, law, contact)
         end associate
-        contact%by_rate = by_rate
+        if (abs(by_rate) * law%rate > nothing * law%pressure) contact%by_rate = by_rate
         if (.not. contact%capped) return
         contact%traction = this%surface%tau_max
         contact%by_rate = 0.0_dp
@@ -395,9 +396,10 @@ contains
                 upper => known%largest_coefficient)
                 if (traits%memory == 1 .and. i == 1) then
                     law%variable = on_mu
-                    step = max(long * (upper - law%state%mu), epsilon(step) * (upper + tiny(step)))
+                    step = long * (upper - law%state%mu)
                     if (law%state%mu - lower > upper - law%state%mu) step = -long &
                         * (law%state%mu - lower)
+                    if (.not. abs(step) > 0.0_dp) step = long   ! friction does not depend on it
                     slope = derivative(law, law%state%mu, step, .true.)
                 else if (traits%memory == 1) then
                     law%variable = on_ratio

@@ -42,8 +42,11 @@ contains
         integer(int64), parameter :: least_digits = 10_int64**16
         integer(int64) :: digits, more_digits
         integer :: power, place
+        logical :: usual
 
-        if (.not. (abs(number) >= least .and. abs(number) <= most)) then
+        usual = exponent(number) <= exponent(most)   ! NaN must not be compared
+        if (usual) usual = abs(number) >= least .and. abs(number) <= most
+        if (.not. usual) then
             write (text, '(es24.16e3)') number
             first = verify(text, ' ')
             return

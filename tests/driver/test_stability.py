@@ -5,6 +5,7 @@ program's way to it is used. STICKSLIP names the program.
 """
 import itertools
 import math
+import shutil
 import unittest
 from fractions import Fraction
 
@@ -306,6 +307,14 @@ class Boundary(Stability):
             kappa, stiffness = (float(point[key]) for key in list(point)[:2])
             _, weakening, c, b = Subloading.terms(kappa, 10.0, 1.0)
             self.assert_near(0.01 * c + 0.01 * stiffness / b / (1e-3 * b * c + 0.01), weakening)
+
+    @unittest.skipUnless(shutil.which('gnuplot'), 'gnuplot is not installed')
+    def test_the_picture_is_drawn(self):
+        for change in ({}, {('sweep', 'key'): "'slider%mass'", ('sweep', 'values'): '1e-3, 1e-1'}, {('friction', 'mu_k'): '0.4'}):
+            result = self.run_text(namelist(change), verb='stability')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            for ending in ('png', 'svg', 'gp'):
+                self.assertGreater((self.folder / f'case_out/case_stability.{ending}').stat().st_size, 1000)
 
     def test_what_has_no_boundary_has_no_map(self):
         result = self.run_text(namelist({('sweep', 'key'): "'time%dt'", ('sweep', 'values'): '1e-3, 1e-4'}), '--no-plot', verb='stability')

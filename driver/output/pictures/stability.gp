@@ -46,7 +46,7 @@ plot file using (is("stable") ? column(1) : NaN):2:(x1(1)):(x2(1)):(y1(2)):(y2(2
          linecolor palette title "unstable", \
      boundary using (found ? column(1) : NaN):2 with points pointtype 7 pointsize 0.6 \
          linecolor "black" title "boundary", \
-     "<echo 0" using (marked ? here_1 : NaN):(here_2) with points pointtype 2 pointsize 2 linewidth 2 \
+     file using (marked && $0 == 0 ? here_1 : NaN):(here_2) with points pointtype 2 pointsize 2 linewidth 2 \
          linecolor "black" title (marked ? "the input" : "")
 set output
 if (ending eq "png") { ending = "svg"; load stem.".gp" }
