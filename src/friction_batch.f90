@@ -280,7 +280,7 @@ contains
         type(block_task) :: task
 
         task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
-            merge(this%plan%n_own, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, &
+            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, &
             this%plan%options), this%dtime)
     end function task_of
 

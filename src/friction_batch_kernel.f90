@@ -36,8 +36,9 @@ module friction_batch_kernel
     type :: trial_block
         type(rest_block) :: rest
         real(wp) :: q1(lanes), q2(lanes)   !! elastic tangential displacement [L]
-        real(wp) :: start(lanes)     !! traction at the start, for a law that follows the path and
-                                     !! has no cap; else -1 [F/L^2]
+        real(wp) :: start(lanes)     !! for a law that follows the path: traction at the start,
+                                     !! without a cap; else -1 [F/L^2]
+        logical :: follows           !! is there such a law?
         integer(c_int) :: moves(lanes)   !! 1 where the traction is beyond the strength, else 0
     end type trial_block
 
@@ -92,10 +93,12 @@ contains
         call check(task, du, statev, left, n_left)
         if (n_left > 0) return
         call load(task, constants, du, statev, trial, valid)
+        trial%follows = .false.
         select case (task%kind)
         case (lane_subloading, lane_cotangent, lane_reciprocal)
             call rest_subloading(constants, task%dt, trial%rest)
         case (lane_exact_rate)
+            trial%follows = .true.
             call rest_subloading_exact(constants, task%dt, trial%rest)
             call leave_reloading(task, constants, statev, trial, valid)
         case (lane_coulomb)
@@ -172,12 +175,9 @@ contains
                 r = constants(i, c_r_0)
             end if
             p = max(0.0_wp, -constants(i, c_alpha_n) * (statev(i, 2) + du(i, 1)))
-            if (p > 0.0_wp) then
-                margin = min(margin, -statev(i, 2), p - smallest)
-            else
-                q1 = 0.0_wp
-                q2 = 0.0_wp
-            end if
+            if (p > 0.0_wp) margin = min(margin, -statev(i, 2), p - smallest)
+            q1 = merge(q1, 0.0_wp, p > 0.0_wp)
+            q2 = merge(q2, 0.0_wp, p > 0.0_wp)
             traction = constants(i, c_alpha_t) * sqrt(q1**2 + (constants(i, c_squeeze) * q2)**2)
             if (abs(q1) + abs(q2) > 0.0_wp) margin = min(margin, traction - smallest)
             valid(i) = margin
@@ -187,7 +187,6 @@ contains
             trial%rest%traction(i) = traction
             trial%q1(i) = q1
             trial%q2(i) = q2
-            trial%start(i) = -1.0_wp
         end do
     end subroutine load
 
@@ -210,6 +209,7 @@ contains
             length = sqrt(u1**2 + u2**2)
             along = u1 * trial%q1(i) + u2 * q2
             reach = trial%rest%strength(i) / constants(i, c_alpha_t)
+            trial%start(i) = -1.0_wp
             if (constants(i, c_cap) >= no_cap) then
                 trial%start(i) = constants(i, c_alpha_t) * length
                 if (abs(u1) + abs(u2) > 0.0_wp .and. abs(u1) + abs(u2) < smallest) then
@@ -354,6 +354,7 @@ contains
         type(slide_block), intent(in) :: packed
         type(slide_block), intent(inout) :: slid
         integer(c_int), intent(inout) :: left(lanes)
+        real(wp) :: any_left
         integer :: i
 
         do i = 1, n
@@ -364,7 +365,11 @@ contains
             slid%d_slip(place(i)) = packed%d_slip(i)
             slid%d_pressure(place(i)) = packed%d_pressure(i)
         end do
-        if (maxval(packed%left(:n)) <= 0.0_wp) return
+        any_left = 0.0_wp
+        do i = 1, packed%n
+            any_left = max(any_left, packed%left(i))
+        end do
+        if (any_left <= 0.0_wp) return
         do i = 1, n
             if (packed%left(i) > 0.0_wp) left(place(i)) = 1
         end do
@@ -516,7 +521,9 @@ contains
             statev(i, 4) = share * trial%q2(i)
             statev(i, 7) = statev(i, 7) + slip
             mean = resistance
-            if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
+            if (trial%follows) then
+                if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
+            end if
             statev(i, 8) = statev(i, 8) + mean * slip * answer%lever(i)
         end do
         call write_answer(task, constants, trial, answer, traction, tangent)

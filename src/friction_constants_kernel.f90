@@ -26,51 +26,58 @@ contains
         real(wp), intent(in) :: props(stride, *)
         real(wp), intent(out) :: constants(lanes, n_constants)
         integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
-        integer(c_int64_t) :: wrong(lanes)
-        integer :: k
+        integer(c_int64_t) :: wrong(lanes), any_wrong
+        integer :: i, k
 
         wrong = 0
         do k = 1, source%n_choices
             call compare(count, props(:count, source%choice(k)), source%chosen(k), wrong)
         end do
-        do k = 1, n_constants
-            constants(:, k) = source%value(k)
+        do k = 1, c_own + source%n_own - 1
+            if (source%place(k) == 0 .or. count < lanes) constants(:, k) = source%value(k)
             if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
-                source%lower(k) > 0.0_wp, constants(:, k), wrong)
+                source%lower(k) > 0.0_wp, source%value(k), constants(:, k), wrong)
         end do
-        do k = c_own, n_constants
-            if (source%place(k) > 0) call follow_rules(source, k, constants, wrong)
+        do k = c_own, c_own + source%n_own - 1
+            call follow_rules(source, k, constants, wrong)
         end do
         if (source%place(c_cap) > 0) where (constants(:, c_cap) <= 0.0_wp) &
             constants(:, c_cap) = no_cap
         if (source%place(c_squeeze) > 0) call invert(constants(:, c_squeeze))
         left = 0
-        if (any(wrong /= 0)) then
-            left = merge(1_c_int, 0_c_int, wrong /= 0)
-            do k = 1, n_constants
-                where (left > 0) constants(:, k) = source%value(k)
-            end do
-        end if
+        any_wrong = 0
+        do i = 1, lanes
+            any_wrong = ior(any_wrong, wrong(i))
+        end do
+        if (any_wrong == 0) return
+        left = merge(1_c_int, 0_c_int, wrong /= 0)
+        do k = 1, c_own + source%n_own - 1
+            where (left > 0) constants(:, k) = source%value(k)
+        end do
     end subroutine copy_constants
 
-    !> One constant of all points; where it is not of ordinary size the lane keeps what it has.
-    pure subroutine copy_column(count, from, not_zero, to, wrong)
+    !> One constant of all points; one that is not of ordinary size is replaced.
+    pure subroutine copy_column(count, from, not_zero, value, to, wrong)
         integer, intent(in) :: count
         real(wp), intent(in) :: from(count)
         logical, intent(in) :: not_zero
+        real(wp), intent(in) :: value   !! that replaces it
         real(wp), intent(inout) :: to(lanes)
         integer(c_int64_t), intent(inout) :: wrong(lanes)   !! not 0 for what cannot be taken
-        integer(c_int64_t) :: number, zero
+        integer(c_int64_t) :: number, zero, ordinary, low, high, other
         integer :: i
 
         zero = merge(bits(most), 0_c_int64_t, not_zero)   ! that is refused, too
+        low = bits(least)
+        high = bits(most)
+        other = bits(value)
         do i = 1, count
             number = bits(from(i))
-            if (number == zero .or. (number > bits(least) .and. number < bits(most))) then
-                to(i) = from(i)
-            else
-                wrong(i) = 1
-            end if
+            ! all bits or none
+            ordinary = iand(shifta(low - number, 63), shifta(number - high, 63))
+            if (number == zero) ordinary = -1
+            to(i) = transfer(ior(iand(number, ordinary), iand(other, not(ordinary))), value)
+            wrong(i) = ior(wrong(i), not(ordinary))
         end do
     end subroutine copy_column
 

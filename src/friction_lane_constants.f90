@@ -30,7 +30,6 @@ module friction_lane_constants
         integer(c_int) :: kind = lane_none   !! see module friction_lane_block
         logical :: options = .false.    !! a shear cap or two coefficients, at any point
         logical :: needs_time = .false. !! no increment without time
-        integer(c_int) :: n_own = 0     !! columns of the law's own constants
         type(constants_source) :: source   !! its values are those of the point that the plan was
                                            !! made for
     end type lane_plan
@@ -98,12 +97,12 @@ contains
                 call must_stay(place, props(place), plan)
                 cycle
             end if
-            if (plan%n_own == n_own) then
+            if (plan%source%n_own == n_own) then
                 plan%kind = lane_none
                 return
             end if
-            column_of(k) = c_own + plan%n_own
-            plan%n_own = plan%n_own + 1_c_int
+            column_of(k) = c_own + plan%source%n_own
+            plan%source%n_own = plan%source%n_own + 1_c_int
             plan%source%place(column_of(k)) = place
             plan%source%lower(column_of(k)) = table%of(k)%lower
             plan%source%upper(column_of(k)) = table%of(k)%upper

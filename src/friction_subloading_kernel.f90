@@ -16,6 +16,8 @@
 module friction_subloading_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : below_largest, lanes, least_ratio, verge, widest, zero_unless
+    use friction_subloading_core, only : chebyshev, inverses, logarithm_after, moved, settled, &
+        slip_guess, slip_move, slip_task, slope, start_far
     implicit none
     private
 
@@ -25,7 +27,6 @@ module friction_subloading_kernel
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
     real(wp), parameter :: smallest = 1.0e-150_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
-    real(wp), parameter :: third = 1.0_wp / 3.0_wp
 
     !> Constants of the law and of the increment.
     type :: increment
@@ -163,7 +164,6 @@ contains
             tau(i) = trial%tau(place(i))
             r_n(i) = trial%r(place(i))
         end do
-        call start(n_solved, inc, p, c, tau, r_n, packed)
         call solve(n_solved, inc, p, c, tau, r_n, packed, moves)
 
         slid%s = 0.0_wp
@@ -181,108 +181,55 @@ contains
         end do
     end subroutine find_slip
 
-    !> First slip and R: `start_far` of module friction_subloading_law, with one division for the
-    !> quotients that can share it.
-    subroutine start(n, inc, p, c, tau, r_n, packed)
-        integer, intent(in) :: n
-        type(increment), intent(in) :: inc
-        real(wp), dimension(lanes), intent(in) :: p, c, tau, r_n   !! of the trial
-        type(slip_block), intent(inout) :: packed
-        real(wp) :: iw0, full, e_n, z, rate, excess, b, root, above, below, gain
-        integer :: i
-
-        iw0 = 1.0_wp / inc%w0
-        do i = 1, n
-            full = (inc%mu_k + c(i) * iw0) * p(i)
-            e_n = 1.0_wp - r_n(i)
-            z = 3.0_wp * (1.0_wp + r_n(i))**2 - 1.8_wp * e_n**2
-            rate = (2.0_wp * inc%m) * (z + e_n**2) / ((1.0_wp + r_n(i)) * z)
-            excess = tau(i) - r_n(i) * full
-            b = 0.5_wp * (inc%alpha_t + rate * (e_n * full - excess))
-            root = sqrt(b**2 + inc%alpha_t * rate * excess)
-            above = root - b
-            below = inc%alpha_t * rate
-            if (b > 0.0_wp) then
-                above = excess
-                below = root + b
-            end if
-            gain = below + rate * above
-            z = 1.0_wp / (gain * below)
-            packed%s(i) = above * gain * z
-            packed%r(i) = (r_n(i) * below + rate * above) * below * z
-            packed%log_r(i) = e_n * below**2 * z   ! 1 - R, for now
-            if (packed%r(i) < 0.5_wp) packed%log_r(i) = 1.0_wp - packed%r(i)
-        end do
-    end subroutine start
-
-    !> Slip and R by Chebyshev's method, as `solve` of module friction_subloading_law.
+    !> Slip and R by the steps of module friction_subloading_core; a point that has settled stays
+    !> where it is while others go on.
     subroutine solve(n, inc, p, c, tau, r_n, packed, moves)
         integer, intent(in) :: n
         type(increment), intent(in) :: inc
         real(wp), dimension(lanes), intent(in) :: p, c, tau, r_n   !! of the trial
-        type(slip_block), intent(inout) :: packed   !! in: slip, R and, as log_r, 1 - R
+        type(slip_block), intent(inout) :: packed
         real(wp), intent(out) :: moves(lanes)   !! 1 for a point that has not converged, else 0
-        real(wp), parameter :: small_step = 1.0e-5_wp
         integer, parameter :: max_iterations = 7
-        real(wp) :: e(lanes), log_r_(lanes), still, ms, w, iw, gain, ir, shared, slack, log_r, &
-            r_rate, misfit, mu, mu_rate, d, ds, dr, bend_s, bend_r, z, r_next, s_next
+        type(slip_task) :: task
+        type(slip_guess) :: at
+        type(slip_move) :: move
+        type(inverses) :: inverse
+        real(wp) :: e(lanes), log_r(lanes), still, iw0, w, gain, shared
         integer :: i, iteration
 
+        iw0 = 1.0_wp / inc%w0
         do i = 1, n
-            e(i) = packed%log_r(i)
+            task = slip_task(tau(i), inc%alpha_t, p(i), r_n(i), c(i), inc%w0, inc%mu_k, inc%kappa, &
+                inc%m)
+            at = start_far(task, (inc%mu_k + c(i) * iw0) * p(i))
+            packed%s(i) = at%s
+            packed%r(i) = at%r
+            e(i) = at%e
             moves(i) = 1.0_wp
         end do
         do iteration = 1, max_iterations
             still = 0.0_wp   ! logarithms apart: their call needs the registers
             do i = 1, n
-                log_r_(i) = log(packed%r(i))
+                log_r(i) = log(packed%r(i))
             end do
             do i = 1, n
-                ms = inc%m * packed%s(i)
-                w = inc%w0 + inc%kappa * packed%s(i)
-                gain = packed%r(i) + ms
-                shared = 1.0_wp / (w * gain * packed%r(i))
-                iw = gain * packed%r(i) * shared
-                ir = w * gain * shared
-                gain = w * packed%r(i) * shared
-                slack = (1.0_wp - packed%r(i)) - e(i)
-                log_r = log_r_(i) + slack
-                r_rate = -inc%m * log_r * packed%r(i) * gain
-                misfit = ((packed%r(i) - r_n(i)) + slack + ms * log_r) * packed%r(i) * gain
-                mu = inc%mu_k + c(i) * iw
-                mu_rate = -inc%kappa * c(i) * iw**2
-                d = 1.0_wp / (inc%alpha_t + p(i) * (packed%r(i) * mu_rate + mu * r_rate))
-                ds = (tau(i) - inc%alpha_t * packed%s(i) - p(i) * mu * (packed%r(i) - misfit)) * d
-                dr = r_rate * ds - misfit
-                bend_r = gain * dr * (inc%m * ds - 0.5_wp * ms * dr * ir)
-                bend_s = -p(i) * (mu_rate * ds * (dr - inc%kappa * iw * packed%r(i) * ds) &
-                    - mu * bend_r) * d
-                bend_r = r_rate * bend_s - bend_r
-                if (max(abs(bend_s) - 0.5_wp * abs(ds), abs(bend_r) - 0.5_wp * abs(dr)) &
-                    > 0.0_wp) then
-                    bend_s = 0.0_wp
-                    bend_r = 0.0_wp
-                end if
-                ! a point that has converged stays where it is
-                ds = (ds + bend_s) * moves(i)
-                dr = (dr + bend_r) * moves(i)
-                z = dr * ir
-                log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * third))
-                if (moves(i) > 0.0_wp) packed%log_r(i) = log_r
-                if (max(inc%m * abs(ds) - small_step * (packed%r(i) + ms), &
-                    inc%kappa * abs(ds) - small_step * w, &
-                    inc%alpha_t * abs(ds) - small_step * tau(i), &
-                    abs(dr) - small_step * min(packed%r(i), e(i))) <= 0.0_wp) moves(i) = 0.0_wp
+                task = slip_task(tau(i), inc%alpha_t, p(i), r_n(i), c(i), inc%w0, inc%mu_k, &
+                    inc%kappa, inc%m)
+                at = slip_guess(packed%s(i), packed%r(i), e(i))
+                w = inc%w0 + inc%kappa * at%s
+                gain = at%r + inc%m * at%s
+                shared = 1.0_wp / (w * gain * at%r)   ! one division for three
+                inverse = inverses(gain * at%r * shared, w * at%r * shared, w * gain * shared)
+                move = chebyshev(task, at, log_r(i), inverse)
+                move%ds = move%ds * moves(i)
+                move%dr = move%dr * moves(i)
+                if (moves(i) > 0.0_wp) packed%log_r(i) = logarithm_after(move, inverse%r)
+                if (settled(task, at, move) <= 0.0_wp) moves(i) = 0.0_wp
                 still = max(still, moves(i))
-                s_next = max(packed%s(i) + ds, 0.05_wp * packed%s(i))
-                r_next = max(packed%r(i) + dr, 0.05_wp * packed%r(i))
-                e(i) = max(e(i) - dr, 0.05_wp * e(i))
-                packed%s(i) = s_next
-                packed%r(i) = 1.0_wp - e(i)
-                if (r_next < 0.5_wp) then
-                    packed%r(i) = r_next
-                    e(i) = 1.0_wp - r_next
-                end if
+                at = moved(at, move)
+                packed%s(i) = at%s
+                packed%r(i) = at%r
+                e(i) = at%e
             end do
             if (still <= 0.0_wp) return
         end do
@@ -298,6 +245,7 @@ contains
         type(slip_block), intent(in) :: slid
         real(wp), intent(inout) :: statev(stride, 8), traction(stride, 3), tangent(stride, 3, 3)
         real(wp), dimension(lanes) :: share, along, coupling, direction, closed
+        type(slip_task) :: task
         real(wp) :: w, iw, gain, shared, mu, full, d_slip, stiffness, below, r, t1, t2, across
         integer :: i
 
@@ -311,8 +259,9 @@ contains
             iw = gain * shared
             mu = inc%mu_k + trial%c(i) * iw
             full = mu * trial%p(i)
-            d_slip = -trial%p(i) * slid%r(i) * (mu * inc%m * slid%log_r(i) * w * shared &
-                + inc%kappa * trial%c(i) * iw**2)
+            task = slip_task(0.0_wp, inc%alpha_t, trial%p(i), trial%r(i), trial%c(i), inc%w0, &
+                inc%mu_k, inc%kappa, inc%m)
+            d_slip = slope(task, slid%r(i), slid%log_r(i), inverses(iw, w * shared, 0.0_wp))
             stiffness = max(inc%alpha_t + d_slip, epsilon(1.0_wp) * inc%alpha_t)
             ! Quotients of all points, though each needs only one of them: none may divide by zero.
             below = max(full, least)

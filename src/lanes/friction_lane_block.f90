@@ -50,6 +50,7 @@ module friction_lane_block
 
     !> Where points find their own constants, and the rules of these.
     type, bind(C), public :: constants_source
+        integer(c_int) :: n_own = 0                !! columns of the law's own constants
         integer(c_int) :: place(n_constants) = 0   !! in `props`; 0: none, `value` instead
         integer(c_int) :: not_below(n_constants) = 0, not_above(n_constants) = 0   !! columns, or 0
         real(c_double) :: value(n_constants) = 0.0_c_double
@@ -72,7 +73,6 @@ module friction_lane_block
 
     !> Points that slide.
     type, public :: slide_block
-        integer :: n                   !! how many, a multiple of the widest vector
         real(wp) :: trial(lanes)       !! in: tangential traction without slip [F/L^2]
         real(wp) :: stiffness(lanes)   !! in: tangential stiffness [F/L^3]
         real(wp) :: pressure(lanes)    !! in: > 0 [F/L^2]
@@ -85,6 +85,8 @@ module friction_lane_block
         real(wp) :: d_pressure(lanes)  !! out: d(resistance)/d(pressure) [-]
         real(wp) :: left(lanes)        !! out: above 0 where the routine for one point is needed:
                                        !! several equilibria are possible, or none was found
+        integer :: n                   !! how many, a multiple of the widest vector; behind the
+                                       !! arrays, which begin where vectors do
     end type slide_block
 
 contains

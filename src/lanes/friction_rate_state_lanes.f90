@@ -20,14 +20,14 @@ module friction_rate_state_lanes
 
     !> What the iteration needs of a block, and where it is.
     type :: search
-        logical :: ages                !! ageing law, else slip law
-        real(wp) :: dt                 !! [T]
         real(wp) :: u_0(lanes)         !! u of the core without slip and theta's change
         real(wp) :: ln_theta_n(lanes)  !! at the start of the increment
         real(wp) :: z(lanes)           !! ln(slip)
         real(wp) :: ln_theta(lanes)    !! at the end of the increment
         real(wp) :: low(lanes), high(lanes)   !! the bracket of z
         real(wp) :: several(lanes)     !! 1 where several equilibria are possible, else 0
+        logical :: ages                !! ageing law, else slip law
+        real(wp) :: dt                 !! [T]
     end type search
 
 contains

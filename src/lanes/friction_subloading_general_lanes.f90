@@ -16,10 +16,10 @@ module friction_subloading_general_lanes
 
     !> Where the iteration is.
     type :: search
-        logical :: cotangent      !! U, else the reciprocal
-        real(wp) :: bend          !! pi/2 or 1
         real(wp) :: r(lanes), e(lanes)           !! R and 1 - R
         real(wp) :: above(lanes), below(lanes)   !! U is their quotient
+        logical :: cotangent      !! U, else the reciprocal
+        real(wp) :: bend          !! pi/2 or 1
     end type search
 
 contains
