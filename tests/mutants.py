@@ -152,8 +152,10 @@ class Base:
             run(['gfortran', '-shared', '-fopenmp', '-Wl,--whole-archive', str(archive), '-Wl,--no-whole-archive', '-o', str(library)], check=True)
             self.contents[library] = [name.removesuffix('.o') for name in run(['ar', 't', str(archive)]).stdout.split()]
             for single in set(self.contents[library]) & {'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90'}:
-                text = (self.build / 'src/adapters' / single).read_text()
-                self.contents[library] += [name for name, path in paths.items() if path.read_text() in text]
+                source = self.build / 'src/adapters' / single
+                self.contents[library] += [name for name, path in paths.items() if path.read_text() in source.read_text()]
+                if not self.compile(source, library.parent, '-O0', '-shared', '-o', str(library)):   # nothing is inlined
+                    sys.exit(f'{single} does not compile')
         order = [name for name in self.contents[self.libraries['libstickslip']] if name in paths]   # what is used comes first
         self.sources = [paths.pop(name) for name in order] + list(paths.values())
         self.tests = []
