@@ -20,99 +20,57 @@ contains
         real(dp), intent(out) :: value
         logical, intent(out) :: is_number
         logical, intent(out) :: too_small        !! a number other than 0 that rounds to 0
-        integer :: magnitude
-        logical :: zero
-
         value = 0.0_dp
         too_small = .false.
-        call take_apart(text, is_number, zero, magnitude)
-        if (.not. is_number) then
+        is_number = is_written_as_number(text)
+        if (is_number) then
+            call convert(text, value)
+            if (abs(value) > 0.0_dp) return
+            value = 0.0_dp   ! and not -0
+            too_small = scan(text(:scan(text // 'e', 'eEdD') - 1), '123456789') > 0
+        else
             call read_name(text, value, is_number)
-        else if (.not. zero) then
-            call convert(text, magnitude, value)
-            too_small = .not. abs(value) > 0.0_dp
         end if
     end subroutine read_number
 
     !> A sign, digits with or without a point, and an exponent with its letter. Fortran itself also
     !> reads an exponent without a letter, 1-3, which is a typing error.
-    pure subroutine take_apart(text, valid, zero, magnitude)
+    pure function is_written_as_number(text) result(yes)
         character(len=*), intent(in) :: text
-        logical, intent(out) :: valid
-        logical, intent(out) :: zero          !! every digit before the exponent is 0
-        integer, intent(out) :: magnitude     !! power of ten of the first digit that is not 0
-        integer :: exponent, digit, i
-        logical :: any_digit, after_point, found
+        logical :: yes
+        integer :: first, last, point
 
-        valid = .false.
-        zero = .true.
-        any_digit = .false.
-        after_point = .false.
-        magnitude = 0
-        exponent = 0
-        i = 1
-        if (scan(text, '+-') == 1) i = 2
-        do i = i, len(text)
-            digit = index(digits, text(i:i)) - 1
-            found = zero .and. digit > 0
-            zero = zero .and. digit <= 0
-            if (digit >= 0) then
-                any_digit = .true.
-                if (after_point .and. (zero .or. found)) magnitude = magnitude - 1
-                if (.not. (after_point .or. zero .or. found)) magnitude = magnitude + 1
-            else if (text(i:i) == '.' .and. .not. after_point) then
-                after_point = .true.
-            else
-                exit
-            end if
-        end do
-        if (.not. any_digit) return
-        valid = i > len(text)
-        if (.not. valid) call read_exponent(text(i:), exponent, valid)
-        magnitude = magnitude + exponent
-    end subroutine take_apart
-
-    pure subroutine read_exponent(text, exponent, valid)
-        character(len=*), intent(in) :: text     !! from its letter on
-        integer, intent(out) :: exponent         !! cut at 100000
-        logical, intent(out) :: valid
-        integer :: first, digit, i
-
-        exponent = 0
-        first = 2
-        if (scan(text(2:), '+-') == 1) first = 3
-        valid = index('eEdD', text(1:1)) > 0 .and. first <= len(text)
-        do i = first, len(text)
-            digit = index(digits, text(i:i)) - 1
-            valid = valid .and. digit >= 0
-            exponent = min(100000, 10 * exponent + digit)
-        end do
-        if (first == 3 .and. valid) exponent = merge(-exponent, exponent, text(2:2) == '-')
-    end subroutine read_exponent
+        first = 1
+        if (scan(text, '+-') == 1) first = 2
+        last = first + verify(text(first:) // ' ', digits // '.') - 2   ! of the mantissa
+        point = index(text(first:last), '.')
+        yes = scan(text(first:last), digits) > 0 .and. point == index(text(first:last), '.', &
+            back=.true.)
+        if (.not. yes .or. last == len(text)) return
+        first = last + 2
+        if (scan(text(min(first, len(text)):), '+-') == 1) first = first + 1
+        yes = scan(text(last + 1:last + 1), 'eEdD') == 1 .and. first <= len(text) &
+            .and. verify(text(min(first, len(text)):), digits) == 0
+    end function is_written_as_number
 
     !> The nearest number, by the C library. Overflow would end a program that asks for that.
-    subroutine convert(text, magnitude, value)
+    subroutine convert(text, value)
         character(len=*), intent(in) :: text
-        integer, intent(in) :: magnitude
         real(dp), intent(out) :: value
         character(len=len(text) + 1) :: copy
         logical :: halting
         integer :: letter
 
-        value = 0.0_dp
-        if (magnitude < -400) return
         copy = text // c_null_char
         letter = scan(copy, 'dD')
         if (letter > 0) copy(letter:letter) = 'e'
-        if (magnitude < 308) then
+        if (len(text) < 300 .and. scan(copy, 'eE') == 0) then
             call to_nearest(copy, value)
-        else if (magnitude == 308) then
+        else
             call ieee_get_halting_mode(ieee_overflow, halting)
             call ieee_set_halting_mode(ieee_overflow, .false.)
             call to_nearest(copy, value)
             call ieee_set_halting_mode(ieee_overflow, halting)
-        else
-            value = ieee_value(value, ieee_positive_inf)
         end if
     end subroutine convert
 

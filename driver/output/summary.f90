@@ -24,11 +24,8 @@ contains
         real(dp) :: row(17)
         type(event_totals) :: all
         real(dp) :: none
-        integer :: i
 
-        do i = 1, size(result%pieces)
-            call add(all, result%pieces(i))
-        end do
+        all = total(result%pieces)
         none = ieee_value(none, ieee_quiet_nan)
         row(1:9) = [real(result%steps, dp), result%time, real(result%iterations, dp), &
             real(result%rejected, dp), real(result%snap_backs, dp), real(all%events, dp), none, &
@@ -47,11 +44,8 @@ contains
         character(len=*), intent(in) :: table   !! name of the file with the time series
         type(event_totals) :: all
         character(len=:), allocatable :: most
-        integer :: i
 
-        do i = 1, size(result%pieces)
-            call add(all, result%pieces(i))
-        end do
+        all = total(result%pieces)
         write (report, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
         most = ', most '
@@ -117,23 +111,24 @@ contains
         text = adjustl(text)
     end function per_step
 
-    pure subroutine add(all, piece)
-        type(event_totals), intent(inout) :: all
-        type(event_totals), intent(in) :: piece
+    !> Of the pieces together.
+    pure function total(pieces) result(all)
+        type(event_totals), intent(in) :: pieces(:)
+        type(event_totals) :: all
 
-        all%events = all%events + piece%events
-        all%recurrences = all%recurrences + piece%recurrences
-        all%period = all%period + piece%period
-        all%force_drop = all%force_drop + piece%force_drop
-    end subroutine add
+        all%events = sum(pieces%events)
+        all%recurrences = sum(pieces%recurrences)
+        all%period = sum(pieces%period)
+        all%force_drop = sum(pieces%force_drop)
+    end function total
 
     !> A mean, or a dash where there is nothing to take the mean of.
-    subroutine line(title, total, count, unit)
+    subroutine line(title, amount, count, unit)
         character(len=*), intent(in) :: title, unit
-        real(dp), intent(in) :: total
+        real(dp), intent(in) :: amount
         integer, intent(in) :: count
 
-        write (report, '(4a)') title, mean(total, count), ' ', unit
+        write (report, '(4a)') title, mean(amount, count), ' ', unit
     end subroutine line
 
     pure function mean(total, count) result(text)

@@ -6,7 +6,7 @@ module point_study
     use law_facts, only : internal_variable
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file
-    use platform, only : report
+    use platform, only : interrupted, report, watch_for_interrupts
     use point_recorder, only : point_csv
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
@@ -63,6 +63,7 @@ contains
             return
         end if
 
+        call watch_for_interrupts()
         call follow_path(run, records, .not. wanted%quiet, point, result)
         call records%file%finish()
         if (records%file%failed .and. len(result%failure) == 0) result%failure = &
@@ -73,7 +74,7 @@ contains
             call tell_failure(wanted%input, result%failure, base)
             exit_status = exit_failed
         end if
-        if (.not. wanted%plot) return
+        if (.not. wanted%plot .or. interrupted()) return
         call draw_point(run, wanted%output, wanted%stem, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine run_point
@@ -143,6 +144,8 @@ contains
             call records%write_row(result%time, point, report%iterations)
             if (records%file%failed) result%failure = trim(place) &
                 // ' cannot write the rows (disk full?)'
+            if (interrupted() .and. len(result%failure) == 0) result%failure = trim(place) &
+                // ' interrupted'
             call bar%show(result%increments / total)
         end subroutine take_increment
 

@@ -6,8 +6,10 @@ import csv
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = os.environ['STICKSLIP']
@@ -223,6 +225,22 @@ class FailedRun(Point):
         self.assertGreater(last['t_t1'], 0.98 * last['mu'] * 10)
         self.assertLess(last['t_t1'], last['mu'] * 10)
         self.assertAlmostEqual(last['t_t1'], 8 * (last['time'] - 1), delta=1e-9)
+
+    def test_an_interrupt_leaves_whole_rows_and_says_so(self):
+        (self.folder / 'case.nml').write_text(namelist({'steps': '1, 20000000'}))
+        with subprocess.Popen([PROGRAM, 'point', 'case.nml', '--no-plot'], cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            table = self.folder / 'case_out/case.csv'
+            while not (table.exists() and table.stat().st_size > 20000):
+                self.assertIsNone(process.poll())
+                time.sleep(0.01)
+            process.send_signal(signal.SIGTERM)
+            said = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 1)
+        self.assertIn('interrupted', said)
+        text = table.read_text()
+        self.assertTrue(text.endswith('\n'))
+        self.assertEqual({line.count(',') for line in text.splitlines()}, {text.split('\n', 1)[0].count(',')})
 
     def test_tension_cannot_be_carried(self):
         rows = self.failed(namelist({'target_n': '-10, 10'}), 'a contact carries no tension',

@@ -26,7 +26,8 @@ set format x "%g"
 if (panels > 1) {
     set yrange [0:*] reverse
     set ylabel "depth [".length_unit."]"
-    set xlabel "contours: one each ".gprintf("%g", between)." ".time_unit.", in events each ".gprintf("%g", during)." ".time_unit
+    set xlabel "contours: one each ".gprintf("%g", between)." ".time_unit.", in events each " \
+        .gprintf("%g", during)." ".time_unit
     set cblabel "slip rate [".length_unit."/".time_unit."]"
     set format cb "10^{%g}"
     set palette defined (-12 "#ffffff", -9 "#a6bddb", -6 "#0072b2", -3 "#f0c040", 1 "#a02020")
