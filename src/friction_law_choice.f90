@@ -3,6 +3,7 @@
 module friction_law_choice
     use friction_anisotropy, only : isotropic, orthotropy, orthotropy_constants, read_orthotropy
     use friction_coulomb_law, only : coulomb_law
+    use friction_flash_heating_law, only : flash_heating_law
     use friction_kinds, only : wp
     use friction_law, only : law, named_law
     use friction_law_constants, only : law_constant, positive
@@ -18,7 +19,7 @@ module friction_law_choice
     implicit none
     private
 
-    public :: choose_law, choose_own_law, find_law, law_storage, whole_number
+    public :: choose_law, choose_own_law, find_law, find_rate_law, law_storage, whole_number
 
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
@@ -27,7 +28,8 @@ module friction_law_choice
     integer, parameter, public :: law_rate_state = 4
     integer, parameter, public :: law_slip_weakening = 5
     integer, parameter, public :: law_slip_weakening_healing = 6
-    integer, parameter, public :: law_count = 6   !! they are numbered from 1 to this
+    integer, parameter, public :: law_flash_heating = 7
+    integer, parameter, public :: law_count = 7   !! they are numbered from 1 to this
 
     !> Material constants: places in `props`. The law's own ones follow, then the shear cap, then
     !> those of orthotropic friction.
@@ -49,6 +51,7 @@ module friction_law_choice
         type(rate_state_law) :: rate_state
         type(slip_weakening_law) :: slip_weakening
         type(slip_weakening_healing_law) :: slip_weakening_healing
+        type(flash_heating_law) :: flash_heating
         type(capped_law) :: capped
     end type law_storage
 
@@ -67,9 +70,23 @@ contains
         case (law_rate_state); found => storage%rate_state
         case (law_slip_weakening); found => storage%slip_weakening
         case (law_slip_weakening_healing); found => storage%slip_weakening_healing
+        case (law_flash_heating); found => storage%flash_heating
         case default; found => null()
         end select
     end subroutine find_law
+
+    !> The same of the laws that tell a slip rate from the traction alone: rate-and-state friction.
+    pure subroutine find_rate_law(number, storage, found)
+        integer, intent(in) :: number
+        type(law_storage), intent(inout), target :: storage
+        class(rate_state_law), pointer, intent(inout) :: found
+
+        select case (number)
+        case (law_rate_state); found => storage%rate_state
+        case (law_flash_heating); found => storage%flash_heating
+        case default; found => null()
+        end select
+    end subroutine find_rate_law
 
     !> The law and its options from the constants.
     pure subroutine choose_law(nprops, props, storage, surface, plane, status)

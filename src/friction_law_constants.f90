@@ -39,7 +39,7 @@ module friction_law_constants
     !> A table of fixed size: nothing is allocated.
     type :: constant_table
         integer :: n = 0               !! how many there are
-        type(law_constant) :: of(16)
+        type(law_constant) :: of(24)
     end type constant_table
 
 contains

@@ -58,6 +58,11 @@ contains
             else if (this%not_below > 0) then
                 call put(line, '>= ')
                 call put_word(line, table%of(this%not_below)%name)
+            else if (this%not_above > 0) then
+                call put(line, 'from ')
+                call put_number(line, this%lower)
+                call put(line, ' to ')
+                call put_word(line, table%of(this%not_above)%name)
             else if (this%upper < huge(this%upper)) then
                 call put(line, 'from ')
                 call put_number(line, this%lower)

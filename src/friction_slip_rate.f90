@@ -7,10 +7,12 @@
 submodule(friction_mod) friction_slip_rate
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : lanes
-    use friction_law_choice, only : first_own_prop, prop_law, whole_number
+    use friction_law_choice, only : find_rate_law, first_own_prop, law_storage, prop_law, &
+        whole_number
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
-    use friction_rate_state_law, only : ageing, n_constants, n_needed, rate_state_law, slipping
+    use friction_rate_state_law, only : ageing, n_constants, n_needed, rate_state_law, shifted, &
+        slipping
     use friction_threads, only : worth_threads
     implicit none
 
@@ -207,8 +209,9 @@ contains
         real(wp), intent(in) :: tau, pressure, damping, props(:), theta
         real(wp), intent(out) :: rates(2)   !! v, d(theta)/dt
         integer, intent(out) :: status
-        type(rate_state_law) :: surface
-        real(wp) :: cap, ln_v, ln_w
+        type(law_storage), target :: storage
+        class(rate_state_law), pointer :: surface
+        real(wp) :: cap, ln_v, ln_w, shift, by_ln_v
         integer :: n_own
 
         status = friction_bad_increment
@@ -217,11 +220,13 @@ contains
         status = friction_bad_property
         if (.not. are_usable(props)) return
         status = friction_bad_law
-        if (whole_number(props(prop_law)) /= law_rate_state) return
+        nullify (surface)
+        call find_rate_law(whole_number(props(prop_law)), storage, surface)
+        if (.not. associated(surface)) return
         call surface%read(size(props) - first_own_prop + 1, props(first_own_prop:), n_own, status)
         if (status < 0) return
         cap = 0.0_wp
-        if (size(props) >= prop_cap) cap = props(prop_cap)
+        if (size(props) >= first_own_prop + n_own) cap = props(first_own_prop + n_own)
         status = friction_bad_property
         if (cap < 0.0_wp) return
         status = friction_bad_state
@@ -243,7 +248,9 @@ contains
         if (surface%evolution == ageing) then
             rates(2) = ageing_rate(rates(1) * theta / surface%d_c)
         else
-            rates(2) = slip_law_rate(rates(1) * theta / surface%d_c, ln_w)
+            shift = 0.0_wp
+            if (surface%evolution == shifted) call surface%steady_shift(ln_v, shift, by_ln_v)
+            rates(2) = slip_law_rate(rates(1) * theta / surface%d_c, ln_w - shift)
         end if
     end subroutine solve_point
 
@@ -255,7 +262,7 @@ contains
     !> from the lower of the slip rates that damping and friction alone allow.
     pure subroutine solve_balance(tau, pressure, damping, surface, theta, ln_v, status)
         real(wp), intent(in) :: tau, pressure, damping   !! >= 0
-        type(rate_state_law), intent(in) :: surface
+        class(rate_state_law), intent(in) :: surface
         real(wp), intent(in) :: theta                    !! > 0 [T]
         real(wp), intent(out) :: ln_v
         integer, intent(out) :: status                   !! ok or no convergence

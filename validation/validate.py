@@ -14,6 +14,7 @@ matplotlib.use('Agg')
 import block_on_slope  # noqa: E402
 import closed_forms  # noqa: E402
 import fault  # noqa: E402
+import flash_heating  # noqa: E402
 import orders  # noqa: E402
 import rate_and_state  # noqa: E402
 import stability  # noqa: E402
@@ -35,6 +36,7 @@ def main():
     report = Report(docs)
     closed_forms.validate(library, report)
     rate_and_state.validate(program, report)
+    flash_heating.validate(library, program, report)
     stability.validate(program, report)
     orders.validate(program, report)
     fault.validate(program, report)

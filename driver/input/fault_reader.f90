@@ -9,7 +9,7 @@ module fault_reader
     use archive_file, only : mix
     use csv_table, only : column_request, csv => table, read_table
     use fault_settings, only : fault_map, fault_plan
-    use friction_mod, only : friction_law_of, law_rate_state
+    use friction_mod, only : friction_facts
     use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use namelist_parser, only : namelist_entry, value_token
@@ -114,7 +114,9 @@ contains
         end do
         plan%constants%x = x
         plan%constants%z = z
-        plan%rate_state = friction_law_of(props) == law_rate_state
+        associate (known => friction_facts(props))
+            plan%rate_state = known%traits%logarithmic
+        end associate
         plan%explicit = plan%rate_state
     end subroutine read_constants
 

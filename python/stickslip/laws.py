@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 
 from . import _library
 
-__all__ = ['AtPoints', 'Coulomb', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic', 'Subloading']
+__all__ = ['AtPoints', 'Coulomb', 'FlashHeating', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic',
+           'Subloading']
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -222,3 +223,25 @@ class SlipWeakeningHealing(Law):
 
     number = 6
     name = 'slip_weakening_healing'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class FlashHeating(Law):
+    """Rate-and-state friction, slip law, that weakens strongly beyond a slip rate.
+
+    a, b, d_c, v0, f0, theta_0: as of RateAndState, b > 0; f_w: friction coefficient far above v_w, up to f0 [-]; v_w: slip
+    rate beyond which friction weakens [L/T]; n: how sharply, 1 to 1000.
+    """
+
+    a: float
+    b: float
+    d_c: float
+    v0: float
+    f0: float
+    f_w: float
+    v_w: float
+    n: float = 8.0
+    theta_0: float | None = None
+
+    number = 7
+    name = 'flash_heating'

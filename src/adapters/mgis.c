@@ -36,7 +36,7 @@ typedef struct {
 /* Bounds of numbers, those of friction.h's constants. */
 static const double least = 0x1p-333, largest = 0x1p333;
 
-enum { failed = -1, unreliable = 0, reliable = 1, message_size = 512, most_props = 8 };
+enum { failed = -1, unreliable = 0, reliable = 1, message_size = 512, most_props = 10 };
 
 /* Which stresses and strains of an element are the contact's, in MFront's order (xx yy zz xy xz yz, shear
  * times the square root of two). A cohesive zone has its components in the order of friction.h. */
@@ -289,3 +289,5 @@ LAW(StickSlipRateAndState, 4, 5, "DirectEffect", "EvolutionEffect", "CriticalSli
     "ReferenceFriction")
 LAW(StickSlipSlipWeakening, 5, 3, "StaticFriction", "KineticFriction", "CriticalSlip")
 LAW(StickSlipSlipWeakeningHealing, 6, 4, "StaticFriction", "KineticFriction", "CriticalSlip", "HealingRate")
+LAW(StickSlipFlashHeating, 7, 7, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
+    "ReferenceFriction", "WeakFriction", "WeakeningSlipRate")

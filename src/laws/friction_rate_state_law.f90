@@ -31,6 +31,8 @@ module friction_rate_state_law
     public :: rate_state_law
 
     integer, parameter, public :: ageing = 0, slipping = 1   !! values of the constant `evolution`
+    integer, parameter, public :: shifted = 2   !! slip law of an extension with a steady state of
+                                                !! its own
 
     type, extends(named_law) :: rate_state_law
         real(wp) :: a         !! direct effect, > 0 [-]
@@ -38,7 +40,7 @@ module friction_rate_state_law
         real(wp) :: d_c       !! slip over which the state evolves, > 0 [L]
         real(wp) :: v0        !! reference slip rate, > 0 [L/T]
         real(wp) :: f0        !! friction coefficient of steady sliding at v0, >= 0 [-]
-        integer :: evolution  !! how theta evolves: one of the two above
+        integer :: evolution  !! how theta evolves: one of the three above
         real(wp) :: theta_0   !! theta of a virgin point, > 0 [T]
     contains
         procedure :: read => read_constants
@@ -60,10 +62,13 @@ module friction_rate_state_law
         procedure :: settle
         procedure :: needs_time
         procedure :: solve
+        procedure :: read_common
+        procedure :: steady_shift => no_shift
+        procedure :: shift_bounds => no_shift_bounds
     end type rate_state_law
 
     !> Its own constants; in `props` they stand from place 4 on.
-    type(law_constant), parameter :: table(7) = [ &
+    type(law_constant), parameter, public :: rate_state_constants(7) = [ &
         law_constant('a', '-', 'direct effect', lower=positive), &
         law_constant('b', '-', 'evolution effect', lower=0.0_wp), &
         law_constant('d_c', 'L', 'slip over which the state evolves', lower=positive), &
@@ -79,9 +84,10 @@ module friction_rate_state_law
     !> Least a, by the larger of b and f0: below, round-off of ln(theta) is more than the whole
     !> direct effect.
     real(wp), parameter :: least_direct = 1.0e-12_wp
+    real(wp), parameter :: least_state = 1.0e-250_wp   !! v0 theta/d_c of a shifted law ends there
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
-    integer, parameter, public :: n_constants = size(table)
+    integer, parameter, public :: n_constants = size(rate_state_constants)
     integer, parameter, public :: n_needed = 5   !! of them; the others have defaults
 
 contains
@@ -91,24 +97,35 @@ contains
         integer, intent(in) :: n
         real(wp), intent(in) :: constants(n)
         integer, intent(out) :: n_own, status
-        real(wp) :: c(size(table))
+        real(wp) :: c(n_constants)
 
-        n_own = size(table)
+        n_own = n_constants
         status = friction_bad_size
         if (n < n_needed) return
+        call self%read_common(constants(:n_needed), status)
+        if (status < 0) return
+        call complete_constants(n_needed, rate_state_constants, n, constants, c, status)
+        if (status /= friction_ok) return
+        self%evolution = int(c(6))
+        self%theta_0 = c(7)
+    end subroutine read_constants
+
+    !> Those that extensions have, too.
+    pure subroutine read_common(self, constants, status)
+        class(rate_state_law), intent(inout) :: self
+        real(wp), intent(in) :: constants(n_needed)   !! finite
+        integer, intent(out) :: status                !! ok or bad property
+
         status = friction_bad_property
-        if (any(constants(:n_needed) < table(:n_needed)%lower)) return
+        if (any(constants < rate_state_constants(:n_needed)%lower)) return
         self%a = constants(1)
         self%b = constants(2)
         self%d_c = constants(3)
         self%v0 = constants(4)
         self%f0 = constants(5)
         if (self%a < least_direct * max(self%b, self%f0)) return
-        call complete_constants(n_needed, table, n, constants, c, status)
-        if (status /= friction_ok) return
-        self%evolution = int(c(6))
-        self%theta_0 = c(7)
-    end subroutine read_constants
+        status = friction_ok
+    end subroutine read_common
 
     pure function name()
         character(len=name_length) :: name
@@ -119,8 +136,8 @@ contains
     pure function constants()
         type(constant_table) :: constants
 
-        constants%n = size(table)
-        constants%of(:size(table)) = table
+        constants%n = n_constants
+        constants%of(:n_constants) = rate_state_constants
     end function constants
 
     pure function typical_coefficient(self) result(mu)
@@ -214,7 +231,7 @@ contains
         real(wp), intent(out) :: theta         !! at its end, > 0 [T]
         real(wp), intent(out) :: ln_theta      !! ln(theta)
         real(wp), intent(out) :: by_ln_slip    !! d(ln theta)/d(ln slip)
-        real(wp) :: x, left, mean, pull
+        real(wp) :: x, left, mean, pull, shift, by_ln_v
 
         x = slip / self%d_c
         left = exp(-x)
@@ -225,11 +242,41 @@ contains
             by_ln_slip = aged_slope(x, theta_n, dt, left, mean, theta)
         else
             pull = log(dt) - log(x) - log(theta_n)
+            shift = 0.0_wp
+            by_ln_v = 0.0_wp
+            if (self%evolution == shifted) call self%steady_shift(log(slip) - log(dt), shift, &
+                by_ln_v)
+            pull = pull + shift
             ln_theta = log(theta_n) + x * mean * pull
-            by_ln_slip = slipped_slope(x, left, mean, pull)
+            by_ln_slip = slipped_slope(x, left, mean, pull) + x * mean * by_ln_v
             theta = max(exp(ln_theta), tiny(theta))
+            if (self%evolution == shifted) theta = max(theta, least_state * (self%d_c / self%v0))
         end if
     end subroutine evolve
+
+    !> How an extension shifts ln(theta) of steady sliding from ln(d_c/v): asked of those whose
+    !> evolution is `shifted`, and of no other.
+    pure subroutine no_shift(self, ln_v, shift, by_ln_v)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: ln_v       !! ln(slip rate)
+        real(wp), intent(out) :: shift     !! of ln(theta)
+        real(wp), intent(out) :: by_ln_v   !! its derivative by ln(slip rate), not above 1 for long
+
+        shift = 0.0_wp
+        by_ln_v = 0.0_wp
+    end subroutine no_shift
+
+    !> Rigorous bounds of both between two slip rates. Instead of its least value the shift may be
+    !> bounded by what keeps `shift - ln(v)` right, which is needed at the larger rate.
+    pure subroutine no_shift_bounds(self, ln_v, shift, by_ln_v)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: ln_v(2)       !! from, to
+        real(wp), intent(out) :: shift(2)     !! least, most
+        real(wp), intent(out) :: by_ln_v(2)   !! least, most
+
+        shift = 0.0_wp
+        by_ln_v = 0.0_wp
+    end subroutine no_shift_bounds
 
     !> The factors of the slope
     !>
@@ -257,6 +304,7 @@ contains
         ! ln(theta) above its last value, and below its first one
         grown = max(0.0_wp, e_high * ((last%slip - from) / self%d_c))
         shrunk = max(0.0_wp, log(first%state%r) - log(last%state%r))
+        if (self%evolution == shifted) shrunk = grown   ! there may be more than one peak
         s_high = slope_of_asinh(last%state%mu / self%a, self%b / self%a * grown)
         s_low = slope_of_asinh(y_first, -self%b / self%a * shrunk)
         low = self%a / last%slip - (self%b / self%d_c) * e_high
@@ -295,7 +343,7 @@ contains
         real(wp), intent(in) :: dt             !! > 0 [T]
         real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
         real(wp), intent(out) :: e_low, e_high !! [-]
-        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2)
+        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), shift(2), by_ln_v(2)
 
         x = [from, to] / self%d_c
         left = exp(-x)
@@ -308,8 +356,16 @@ contains
             e_high = min(1.0_wp, fall(1) / theta(2))
         else
             pull = log(dt) - log(x) - log(theta_n)
-            e_low = mean(2) - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
-            e_high = mean(1) - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
+            e_low = mean(2)
+            e_high = mean(1)
+            if (self%evolution == shifted) then
+                call self%shift_bounds(log([from, to]) - log(dt), shift, by_ln_v)
+                pull = pull + shift([2, 1])
+                e_low = (1.0_wp - by_ln_v(2)) * merge(mean(2), mean(1), by_ln_v(2) < 1.0_wp)
+                e_high = (1.0_wp - by_ln_v(1)) * merge(mean(1), mean(2), by_ln_v(1) < 1.0_wp)
+            end if
+            e_low = e_low - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
+            e_high = e_high - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
         end if
     end subroutine evolution_bounds
 
@@ -447,11 +503,16 @@ contains
         type(load_rates), intent(in) :: load
         real(wp), intent(in) :: slip_rate
         type(law_state) :: rates
-        real(wp) :: x
+        real(wp) :: x, shift, by_ln_v
 
         x = slip_rate * state%r / self%d_c
         rates = law_state(mu=0.0_wp, r=ageing_rate(x))
-        if (self%evolution == slipping) rates%r = slip_law_rate(x, log(max(x, tiny(x))))
+        if (self%evolution /= ageing) then
+            shift = 0.0_wp
+            if (self%evolution == shifted) call self%steady_shift(log(max(slip_rate, &
+                least_slip * self%v0)), shift, by_ln_v)
+            rates%r = slip_law_rate(x, log(max(x, tiny(x))) - shift)
+        end if
         if (load%pressure > 0.0_wp) rates%mu = (load%loading - load%stiffness * slip_rate &
             - load%traction / load%pressure * load%pressure_rate) / load%pressure
     end function state_rates

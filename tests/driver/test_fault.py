@@ -220,6 +220,21 @@ class Laws(FaultTest):
         self.assertAlmostEqual(float(last['implicit']['traction']) / 50e6, float(last['explicit']['traction']) / 50e6,
                                delta=1e-3)
 
+    def test_flash_heating_weakens_what_slips_fast_and_nothing_else(self):
+        text = SMALL.replace('d_c = 0.032', 'd_c = 0.132').replace('1.0e10', '1.2e10')
+        law = "law = 'rate_and_state'"
+        events = {}
+        for stem, other in (('plain', law + ", evolution = 'slip'"), ('cold', "law = 'flash_heating', f_w = 0.2, v_w = 1e9"),
+                            ('hot', "law = 'flash_heating', f_w = 0.2, v_w = 0.1")):
+            self.run_fault(self.write(text.replace(law, other), f'{stem}.nml'), '--quiet')
+            events[stem] = self.events(f'{stem}_out', stem)
+        self.assertEqual(len(events['cold']), len(events['plain']))
+        for cold, plain in zip(events['cold'], events['plain']):
+            self.assertAlmostEqual(float(cold['onset']), float(plain['onset']), delta=1.0)
+            self.assertAlmostEqual(float(cold['largest_slip']), float(plain['largest_slip']), delta=1e-5)
+        slips = {stem: max(float(event['largest_slip']) for event in events[stem]) for stem in events}
+        self.assertGreater(slips['hot'], 4 * slips['cold'])
+
     def test_constant_friction_slides_at_the_plate_rate(self):
         text = SMALL.replace("law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6",
                              "law = 'coulomb', mu = 0.6")

@@ -15,6 +15,8 @@ LAWS = {
     'slip_weakening': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01),
     'slip_weakening_healing': stickslip.laws.SlipWeakeningHealing(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01,
                                                                   xi=2),
+    'flash_heating': stickslip.laws.FlashHeating(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6,
+                                                 f_w=0.2, v_w=0.01),
 }
 
 

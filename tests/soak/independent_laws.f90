@@ -7,14 +7,14 @@ module independent_laws
     implicit none
     private
 
-    public :: evolution_misfits, healed_slip, is_sheared, load_case, material, mean_decay, pulled, &
-        read_increment, read_material, rested_strength, resistance_of
+    public :: creeps, evolution_misfits, healed_slip, is_sheared, load_case, material, &
+        mean_decay, pulled, read_increment, read_material, rested_strength, resistance_of
 
     !> What `props` says.
     type :: material
-        integer :: law           !! 1 to 6
+        integer :: law           !! 1 to 7
         real(qp) :: alpha_n, alpha_t
-        real(qp) :: own(7)       !! the law's own constants
+        real(qp) :: own(9)       !! the law's own constants
         real(qp) :: mu_0         !! of a virgin point
         integer :: form          !! of law 1: 0 logarithm, 1 cotangent, 2 reciprocal, 3 exact rate;
                                  !! of law 4: 0 ageing, 1 slip
@@ -36,19 +36,29 @@ module independent_laws
 
     real(qp), parameter :: half_pi = acos(0.0_qp)
 
+    !> v0 theta/d_c of law 7 ends here.
+    real(qp), parameter :: least_state = 1.0e-250_dp
+
 contains
+
+    !> Laws of rate-and-state friction, which slide under any traction.
+    pure logical function creeps(law)
+        integer, intent(in) :: law   !! number
+
+        creeps = any(law == [4, 7])
+    end function creeps
 
     subroutine read_material(props, mat)
         real(dp), intent(in) :: props(:)
         type(material), intent(out) :: mat
-        integer, parameter :: places(6) = [12, 5, 7, 11, 7, 8]   ! of the cap
+        integer, parameter :: places(7) = [12, 5, 7, 11, 7, 8, 13]   ! of the cap
         integer :: n_own, cap
 
         mat%law = nint(props(1))
         mat%alpha_n = props(2)
         mat%alpha_t = props(3)
         mat%own = 0.0_qp
-        n_own = min(7, size(props) - 3)
+        n_own = min(9, size(props) - 3)
         mat%own(:n_own) = props(4:3 + n_own)
         mat%form = 0
         mat%mu_0 = mat%own(1)
@@ -59,6 +69,10 @@ contains
         else if (mat%law == 4) then
             if (size(props) > 8) mat%form = nint(props(9))
             if (size(props) < 10) mat%own(7) = mat%own(3) / mat%own(4)
+        else if (mat%law == 7) then
+            mat%form = 1
+            if (size(props) < 11) mat%own(8) = 8.0_qp
+            if (size(props) < 12) mat%own(9) = mat%own(3) / mat%own(4)
         end if
         mat%tau_max = huge(1.0_dp)
         mat%rho = 1.0_qp
@@ -98,6 +112,7 @@ contains
             this%mu = mat%mu_0
             this%r = 0.0_qp
             if (mat%law == 4) this%r = mat%own(7)
+            if (mat%law == 7) this%r = mat%own(9)
         end if
         if (.not. closed) return
         this%mu_rest = mu_after(mat, this, 0.0_qp)
@@ -143,7 +158,7 @@ contains
         type(load_case), intent(in) :: this
         logical :: sheared
 
-        sheared = (mat%law == 3 .or. mat%law == 4) .and. any(abs(this%q) > 0.0_qp)
+        sheared = (mat%law == 3 .or. creeps(mat%law)) .and. any(abs(this%q) > 0.0_qp)
     end function is_sheared
 
     !> Friction coefficient after the slip s in the increment; of law 4 the state does that.
@@ -202,22 +217,55 @@ contains
         if (x > 1.0e-10_qp) mean = (1.0_qp - exp(-x)) / x
     end function mean_decay
 
-    !> ln(theta) of law 4 after the slip s.
+    !> ln(theta) of laws 4 and 7 after the slip s.
     function ln_theta(mat, this, s) result(ln)
         type(material), intent(in) :: mat
         type(load_case), intent(in) :: this
         real(qp), intent(in) :: s
         real(qp) :: ln
-        real(qp) :: x
+        real(qp) :: x, steady
 
         x = s / mat%own(3)
         if (mat%form == 0) then
             ln = log(this%r * exp(-x) + this%dt * mean_decay(x))
         else
             ln = log(this%r)
-            if (x > 0.0_qp) ln = ln + x * mean_decay(x) * (log(this%dt) - log(x) - ln)
+            if (.not. x > 0.0_qp) return
+            steady = log(this%dt) - log(x)
+            if (mat%law == 7) steady = heated(mat, s / this%dt)
+            ln = ln + x * mean_decay(x) * (steady - ln)
         end if
     end function ln_theta
+
+    !> ln(theta) of law 7 in steady sliding: psi_ss = f0 + b ln(v0 theta/d_c).
+    function heated(mat, v) result(ln)
+        type(material), intent(in) :: mat
+        real(qp), intent(in) :: v
+        real(qp) :: ln
+        real(qp) :: f_lv, f_ss, g, psi, x
+
+        associate (a => mat%own(1), b => mat%own(2), v0 => mat%own(4), f0 => mat%own(5), &
+            f_w => mat%own(6), n => mat%own(8))
+            x = log(v / (2.0_qp * v0)) + (f0 - b * log(v / v0)) / a
+            if (x > 40.0_qp) then
+                f_lv = a * (x + log(2.0_qp))
+            else
+                f_lv = a * asinh(exp(x))
+            end if
+            x = n * log(v / mat%own(7))
+            if (x > 100.0_qp) then
+                g = mat%own(7) / v
+            else
+                g = (1.0_qp + exp(x))**(-1.0_qp / n)
+            end if
+            f_ss = max(f_w + (f_lv - f_w) * g, 1.0e-100_qp * a)
+            if (x < -70.0_qp) f_ss = max(f_lv * g + f_w * exp(x) / n, 1.0e-100_qp * a)
+            psi = f_ss / a
+            if (psi < 100.0_qp) psi = log(sinh(psi)) + log(2.0_qp)
+            psi = a * (psi + log(v0 / v))
+            ln = (psi - f0) / b + log(mat%own(3) / v0)
+        end associate
+    end function heated
 
     !> Misfits of the discrete evolution laws for the state `new` after the slip s, zero for none:
     !> of the friction coefficient, and of the internal variable, with the scales of their terms.
@@ -235,9 +283,11 @@ contains
         select case (mat%law)
         case (1)
             call ratio_misfit(mat, this%r_start, s, min(r, 1.0_qp), misfit(2), scale(2))
-        case (4)
+        case (4, 7)
             x = ln_theta(mat, this, s)
             misfit(2) = log(r) - x
+            if (mat%law == 7) misfit(2) = log(r) - max(x, log(least_state * mat%own(3) &
+                / mat%own(4)))
             scale(2) = 1.0_qp + abs(x) + abs(log(this%r)) + abs(log(this%dt))
             misfit(1) = mu - viscous(mat, this, s, x, scale(1))
         case (5)
@@ -352,7 +402,7 @@ contains
         real(qp) :: resistance
         real(qp) :: unused
 
-        if (mat%law == 4) then
+        if (creeps(mat%law)) then
             resistance = this%p * viscous(mat, this, s, ln_theta(mat, this, s), unused)
         else
             resistance = this%p * mu_after(mat, this, s)

@@ -2,8 +2,8 @@
 module path_checks
     use, intrinsic :: iso_fortran_env, only : dp => real64, qp => real128
     use friction_mod, only : friction_update
-    use independent_laws, only : evolution_misfits, healed_slip, is_sheared, load_case, &
-        material, mean_decay, pulled, read_increment, read_material, resistance_of, &
+    use independent_laws, only : creeps, evolution_misfits, healed_slip, is_sheared, &
+        load_case, material, mean_decay, pulled, read_increment, read_material, resistance_of, &
         rested_strength
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
@@ -68,7 +68,7 @@ contains
         else if (nint(t%props(1)) == 1) then
             if (t%new(6) > 1.0_dp .or. t%new(5) < t%props(5) .or. t%new(5) > t%props(4)) kind_ = &
                 k_range
-        else if (nint(t%props(1)) == 4 .and. .not. t%new(6) > 0.0_dp) then
+        else if (creeps(nint(t%props(1))) .and. .not. t%new(6) > 0.0_dp) then
             kind_ = k_range
         end if
     end function check_range
@@ -93,7 +93,7 @@ contains
         integer :: status
 
         kind_ = 0
-        if (nint(t%props(1)) == 4 .or. nint(t%new(1)) /= 2 .or. t%given) return
+        if (creeps(nint(t%props(1))) .or. nint(t%new(1)) /= 2 .or. t%given) return
         if (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp) return
         zero = 0.0_dp
         state = t%new
@@ -193,7 +193,9 @@ contains
         end if
         kind_ = k_equation
         call evolve(t%new(5), t%new(6), s, misfit, scale, doubt)
-        if (mat%law == 4 .and. s < max(1.0e-90_qp * mat%own(3), 100.0_qp * error)) misfit = 0.0_qp
+        if (creeps(mat%law) .and. s < max(1.0e-90_qp * mat%own(3), 100.0_qp * error)) then
+            misfit = 0.0_qp
+        end if
         if (equivalent >= mat%tau_max * (1.0_qp - 64.0_qp * eps)) then   ! the cap holds
             own = this%p * t%new(5)
             if (mat%law == 1) own = own * t%new(6)
@@ -346,7 +348,7 @@ contains
                 x(i) = real(i - n / 2, qp) / (n - n / 2)
             end if
         end do
-        if (mat%law >= 5) then
+        if (any(mat%law == [5, 6])) then
             kink = (mat%own(3) - this%r) / norm2(this%q)
             if (mat%law == 6) kink = (mat%own(3) - healed_slip(mat, this, 0.0_qp)) &
                 / (norm2(this%q) * mean_decay(mat%own(4) * this%dt))

@@ -3,6 +3,7 @@
 module path_draws
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use draws, only : draw
+    use independent_laws, only : creeps
     implicit none
     private
 
@@ -38,13 +39,13 @@ contains
     !> A law with its options, and points under it that nothing has touched.
     subroutine draw_props(this)
         type(path), intent(out) :: this
-        real(dp) :: own(11), half, mu
+        real(dp) :: own(12), half, mu
         integer :: law, n
 
         this%extreme = chance(0.05_dp)
         this%half = 0.5_dp * nint(draw(0.5_dp, 7.5_dp))
         half = this%half
-        law = min(6, 1 + int(draw(0.0_dp, 12.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
+        law = min(7, 1 + int(draw(0.0_dp, 14.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
         mu = draw(0.05_dp, 1.5_dp)
         this%pressure = 10.0_dp * decade(half)
         own = 0.0_dp
@@ -72,13 +73,16 @@ contains
             own(6) = merge(0.0_dp, 1.0_dp, chance(0.5_dp))
             own(7) = own(3) / own(4) * decade(half)
             n = 7
+        case (7)
+            call draw_flash_heating(this, mu, own)
+            n = 9
         case default
             own(3) = this%reach * decade(half)
             own(4) = decade(half) / this%time
             if (chance(0.1_dp)) own(4) = 0.0_dp
             n = merge(3, 4, law == 5)
         end select
-        this%needs_time = law == 3 .or. law == 4
+        this%needs_time = any(law == [3, 4, 7])
         call draw_options(this, own, n)
         this%props = [this%props, own(:n)]
         if (this%extreme) call make_extreme(this)
@@ -88,7 +92,7 @@ contains
 
     subroutine draw_subloading(this, own)
         type(path), intent(in) :: this
-        real(dp), intent(inout) :: own(11)
+        real(dp), intent(inout) :: own(12)
         integer :: form
 
         own(3) = decade(this%half) / this%reach
@@ -103,10 +107,28 @@ contains
         if (form == 3) own(8) = 2.0_dp
     end subroutine draw_subloading
 
+    subroutine draw_flash_heating(this, mu, own)
+        type(path), intent(in) :: this
+        real(dp), intent(in) :: mu
+        real(dp), intent(inout) :: own(12)
+
+        own(1) = 0.02_dp * mu * decade(0.3_dp * this%half)
+        own(2) = 0.03_dp * mu * decade(0.3_dp * this%half)
+        own(3) = this%reach * decade(this%half)
+        own(4) = own(3) / this%time * decade(this%half)
+        own(5) = mu
+        own(6) = mu * draw(0.0_dp, 1.0_dp)
+        if (chance(0.1_dp)) own(6) = merge(0.0_dp, mu, chance(0.5_dp))
+        own(7) = this%reach / this%time * decade(this%half)
+        own(8) = draw(1.0_dp, 12.0_dp)
+        if (chance(0.3_dp)) own(8) = merge(1.0_dp, 8.0_dp, chance(0.5_dp))
+        own(9) = own(3) / own(4) * decade(this%half)
+    end subroutine draw_flash_heating
+
     !> Shear cap, on either side of the strength or just at it, and orthotropy.
     subroutine draw_options(this, own, n)
         type(path), intent(in) :: this
-        real(dp), intent(inout) :: own(11)
+        real(dp), intent(inout) :: own(12)
         integer, intent(inout) :: n
 
         if (chance(0.4_dp)) return
@@ -131,8 +153,8 @@ contains
             if (nint(this%props(1)) == 4 .and. i == 9) cycle
             if (this%props(i) > 0.0_dp .and. chance(0.7_dp)) this%props(i) = decade(big)
         end do
-        if (nint(this%props(1)) /= 2 .and. nint(this%props(1)) /= 4) this%props(5) = &
-            min(this%props(5), this%props(4))
+        if (all(nint(this%props(1)) /= [2, 4, 7])) this%props(5) = min(this%props(5), this%props(4))
+        if (nint(this%props(1)) == 7) this%props(9) = min(this%props(9), this%props(8))
         if (nint(this%props(1)) == 1) this%props(9) = this%props(4)
         this%half = big
         this%pressure = decade(big)
@@ -207,7 +229,7 @@ contains
         if (chance(0.4_dp)) r = corners(1 + int(draw(0.0_dp, 5.99_dp)))
         mu = this%props(4)
         if (nint(this%props(1)) == 1) mu = draw(this%props(5), this%props(4))
-        if (nint(this%props(1)) == 4) mu = 0.5_dp
+        if (creeps(nint(this%props(1)))) mu = 0.5_dp
         angle = draw(0.0_dp, 6.3_dp)
         reach = r * mu * this%pressure / this%props(3)
         if (chance(0.2_dp)) reach = reach * draw(0.0_dp, 2.0_dp)
@@ -215,9 +237,9 @@ contains
             reach * sin(angle), mu, 0.0_dp, 0.0_dp, 0.0_dp]
         if (chance(0.5_dp)) this%statev(i, 3:4) = [reach, 0.0_dp]
         if (nint(this%props(1)) == 1) this%statev(i, 6) = r
-        if (nint(this%props(1)) == 4) this%statev(i, 6) = min(1.0e100_dp, this%props(6) &
+        if (creeps(nint(this%props(1)))) this%statev(i, 6) = min(1.0e100_dp, this%props(6) &
             / this%props(7) * decade(min(this%half, 20.0_dp)))
-        if (nint(this%props(1)) >= 5) then
+        if (any(nint(this%props(1)) == [5, 6])) then
             this%statev(i, 6) = r * this%props(6)
             if (chance(0.2_dp)) this%statev(i, 6) = this%props(6) * draw(0.9_dp, 3.0_dp)
         end if

@@ -12,6 +12,7 @@ program soak
     use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_state, &
         friction_no_convergence, friction_tangential, friction_update, friction_update_batch, &
         friction_update_frame, friction_zero_time_increment
+    use independent_laws, only : creeps
     use path_checks, only : check_equations, check_first_root, check_range, check_tangent, &
         check_hold, expects_time, k_batch, k_batch_status, k_code, k_convergence, k_entry, &
         k_hold, k_refused, kinds, n_kinds, tally, trial_of
@@ -242,9 +243,9 @@ contains
         apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)))))
         condition = 1.0_dp
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
-        if (nint(t%props(1)) == 4) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
+        if (creeps(nint(t%props(1)))) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
         inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
-        if (nint(t%props(1)) >= 5) inner(2) = max(inner(2), length)   ! a slip
+        if (any(nint(t%props(1)) == [5, 6])) inner(2) = max(inner(2), length)   ! a slip
         apart = max(apart, maxval(abs(state(5:6) - t%new(5:6)) / inner) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         apart = max(apart, abs(state(8) - t%new(8)) / max(force * length + t%new(8), &
@@ -289,8 +290,8 @@ contains
             if (norm2(matmul(q, t%traction) - traction) > 100.0_dp * scale * max(1.0_dp, &
                 maxval(abs(t%tangent)) / maxval(t%props(2:3)))) call note(k_entry, t)
         end if
-        slid = nint(state(1)) == 2 .and. nint(t%props(1)) /= 4 .and. .not. (nint(t%props(1)) == 3 &
-            .and. .not. t%dt > 0.0_dp)
+        slid = nint(state(1)) == 2 .and. .not. creeps(nint(t%props(1))) &
+            .and. .not. (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp)
         zero = 0.0_dp
         call friction_update_frame(zero, q(:, 1), t%dt, t%props, state, traction, tangent, &
             status, axis=q(:, 2))

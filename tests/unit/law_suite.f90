@@ -3,8 +3,8 @@
 module law_suite
     use, intrinsic :: iso_fortran_env, only : dp => real64, real128
     use draws, only : draw
-    use friction_mod, only : friction_update, law_coulomb, law_rate_state, law_slip_weakening, &
-        law_slip_weakening_healing, law_static_kinetic, law_subloading
+    use friction_mod, only : friction_update, law_coulomb, law_flash_heating, law_rate_state, &
+        law_slip_weakening, law_slip_weakening_healing, law_static_kinetic, law_subloading
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
@@ -12,7 +12,7 @@ module law_suite
     public :: exact_tangent, law_case, law_point, laws, random_law_point
 
     integer, parameter :: qp = real128
-    integer, parameter :: most_own = 11
+    integer, parameter :: most_own = 12
 
     type :: law_case
         character(len=26) :: name
@@ -32,10 +32,11 @@ module law_suite
     real(dp), parameter :: rate_state(5) = [0.01_dp, 0.015_dp, 1.0e-2_dp, 1.0_dp, mu]
     real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
     real(dp), parameter :: healing(4) = [slip_weakening, 1.0e2_dp]
+    real(dp), parameter :: flash_heating(9) = [rate_state, 0.1_dp, 10.0_dp, 8.0_dp, theta_0]
     real(dp), parameter :: unused(most_own) = 0.0_dp
     real(dp), parameter :: associated(2) = [0.6_dp, 0.0_dp], radial(2) = [0.6_dp, 1.0_dp]
 
-    type(law_case), parameter :: laws(28) = [ &
+    type(law_case), parameter :: laws(31) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
         [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
@@ -68,15 +69,15 @@ module law_suite
         law_case('Coulomb, radial', law_coulomb, 4, [mu, 0.0_dp, radial, unused(5:)], 'm-o-', &
         .false.), &
         law_case('subloading, associated', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, &
-        0.0_dp, associated], 'mmdddm---o-', .false.), &
+        0.0_dp, associated, unused(12:)], 'mmdddm---o-', .false.), &
         law_case('subloading, radial', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, 0.0_dp, &
-        radial], 'mmdddm---o-', .false.), &
+        radial, unused(12:)], 'mmdddm---o-', .false.), &
         law_case('exact rate, associated', law_subloading, 11, [subloading, 1.0_dp, 0.0_dp, &
-        0.0_dp, associated], 'mmdddm---o-', .false.), &
+        0.0_dp, associated, unused(12:)], 'mmdddm---o-', .false.), &
         law_case('exact rate, radial', law_subloading, 11, [subloading, 1.0_dp, 0.0_dp, 0.0_dp, &
-        radial], 'mmdddm---o-', .false.), &
+        radial, unused(12:)], 'mmdddm---o-', .false.), &
         law_case('associated, capped', law_subloading, 11, [subloading, 0.0_dp, 0.0_dp, tau_max, &
-        associated], 'mmdddm--do-', .false.), &
+        associated, unused(12:)], 'mmdddm--do-', .false.), &
         law_case('static-kinetic, associated', law_static_kinetic, 6, [static_kinetic, 0.0_dp, &
         associated, unused(7:)], 'mmd-o-', .true.), &
         law_case('rate-and-state, associated', law_rate_state, 10, [rate_state, 0.0_dp, theta_0, &
@@ -88,7 +89,13 @@ module law_suite
         law_case('healing, capped', law_slip_weakening_healing, 5, [healing, tau_max, &
         unused(6:)], 'mmddd', .false.), &
         law_case('healing, associated', law_slip_weakening_healing, 7, [healing, 0.0_dp, &
-        associated, unused(8:)], 'mmdd-o-', .false.)]
+        associated, unused(8:)], 'mmdd-o-', .false.), &
+        law_case('flash heating', law_flash_heating, 9, [flash_heating, unused(10:)], &
+        'mmddmmd-d', .true.), &
+        law_case('flash heating, capped', law_flash_heating, 10, [flash_heating, tau_max, &
+        unused(11:)], 'mmddmmd-dd', .true.), &
+        law_case('flash heating, associated', law_flash_heating, 12, [flash_heating, 0.0_dp, &
+        associated], 'mmddmmd-d-o-', .true.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point
