@@ -62,8 +62,8 @@ contains
     !> value that its forces, stiffness and velocity make up.
     subroutine find_all_critical(answer)
         type(steady_answer), intent(inout) :: answer
-        real(dp), parameter :: decades = 8.0_dp
-        integer, parameter :: steps = 128
+        real(dp), parameter :: decades = 6.0_dp
+        integer, parameter :: steps = 96
         real(dp), parameter :: nothing = 1.0e-150_dp   !! too small to look around
         real(dp) :: natural(criticals), middle, force
         integer :: i

@@ -25,9 +25,11 @@ module steady_sliding
         real(dp), allocatable :: props(:)            !! constants of the friction routine
         type(sliding_surface), private :: surface    !! made of these
         integer, private :: status = friction_ok     !! negative if they do not fit together
+        real(dp), private :: bounds(2) = 0.0_dp      !! of a coefficient that the law remembers [-]
         character(len=:), allocatable :: problem     !! why there can be no steady sliding; or empty
     contains
         procedure :: knows, set, value_of
+        procedure, private :: take_constants
     end type sliding_case
 
     !> A contact about steady sliding. In small disturbances of traction tau, slip rate s', pressure
@@ -102,7 +104,7 @@ contains
         this%across = run%across
         this%rigid = run%rigid_contact
         this%props = run%props
-        call read_surface(this%props, this%surface, this%status)
+        call this%take_constants()
         this%problem = ''
         if (run%drive%measured_until < huge(1.0_dp)) then
             this%problem = 'the drive follows a file'
@@ -186,9 +188,19 @@ contains
             self%across%tilt = value
         case default
             self%props(place_of(self, key)) = value
-            call read_surface(self%props, self%surface, self%status)
+            call self%take_constants()
         end select
     end subroutine set
+
+    !> After a change of the law's constants.
+    subroutine take_constants(self)
+        class(sliding_case), intent(inout) :: self
+        type(facts) :: known
+
+        call read_surface(self%props, self%surface, self%status)
+        known = friction_facts(self%props)
+        self%bounds = [known%kinetic_coefficient, known%largest_coefficient]
+    end subroutine take_constants
 
     !> Where a constant of the law stands; 0 for another key.
     pure function place_of(self, key) result(place)
@@ -219,10 +231,10 @@ contains
         law%surface => this%surface
         law%rate = abs(this%velocity)
         law%pressure = this%normal
-        associate (traits => this%surface%traits, known => friction_facts(this%props))
+        associate (traits => this%surface%traits)
             contact%follows_velocity = this%rigid .or. traits%onset == onset_drops
             contact%remembered = merge(2, traits%memory / 2, traits%memory == 1)
-            call settle_memory(known, law, contact%remembered, problem)
+            call settle_memory(this%bounds, law, contact%remembered, problem)
             if (len(problem) > 0) return
             if (this%across%free()) call find_pressure(this, law, problem)
             if (len(problem) > 0) return
@@ -231,7 +243,7 @@ contains
             call this%surface%law%resistance_at(law%state, law%rate, law%pressure, &
                 contact%traction, by_rate)
             contact%capped = contact%traction >= this%surface%tau_max
-            call differentiate(known, law, contact)
+            call differentiate(this%bounds, law, contact)
         end associate
         if (abs(by_rate) * law%rate > nothing * law%pressure) contact%by_rate = by_rate
         if (.not. contact%capped) return
@@ -292,8 +304,8 @@ contains
 
     !> What the law remembers when it has slid for ever. What does not count any more by then is
     !> not among what is remembered.
-    subroutine settle_memory(known, law, remembered, problem)
-        type(facts), intent(in) :: known
+    subroutine settle_memory(coefficients, law, remembered, problem)
+        real(dp), intent(in) :: coefficients(2)   !! least and largest that a law remembers [-]
         type(law_about), intent(inout) :: law
         integer, intent(inout) :: remembered
         character(len=:), allocatable, intent(out) :: problem
@@ -307,7 +319,7 @@ contains
             case (1)
                 law%state = law_state(mu=0.0_dp, r=1.0_dp)
                 law%variable = on_mu
-                bounds = [known%kinetic_coefficient, known%largest_coefficient]
+                bounds = coefficients
             case (2)
                 if (traits%logarithmic) then
                     law%variable = on_ln_memory
@@ -372,8 +384,8 @@ contains
     end function root_between
 
     !> All derivatives but that by the slip rate.
-    subroutine differentiate(known, law, contact)
-        type(facts), intent(in) :: known
+    subroutine differentiate(coefficients, law, contact)
+        real(dp), intent(in) :: coefficients(2)   !! least and largest that a law remembers [-]
         type(law_about), intent(inout) :: law
         type(contact_response), intent(inout) :: contact
         real(dp), parameter :: long = 0.5_dp   !! first step, as part of the variable
@@ -392,8 +404,8 @@ contains
             / law%surface%traits%slip_scale, .false.)
         contact%rate_by_loading = slope(2:)
         do i = 1, contact%remembered
-            associate (traits => law%surface%traits, lower => known%kinetic_coefficient, &
-                upper => known%largest_coefficient)
+            associate (traits => law%surface%traits, lower => coefficients(1), &
+                upper => coefficients(2))
                 if (traits%memory == 1 .and. i == 1) then
                     law%variable = on_mu
                     step = long * (upper - law%state%mu)

@@ -123,7 +123,7 @@ class RateAndState(Stability):
     def test_where_there_is_no_change_it_says_so(self):
         """Without mass the velocity does not matter."""
         result = self.run_text(rate_and_state(0.0, 1e-3, 1.0), '--no-plot', verb='stability')
-        self.assertRegex(result.stdout, 'critical velocity +none from +1.0E-08 to +1.0E.08')
+        self.assertRegex(result.stdout, 'critical velocity +none from +1.0E-06 to +1.0E.06')
         row = self.rows('case_out/case_stability.csv')[0]
         self.assertEqual(row['critical_velocity'], 'NaN')
 
@@ -237,6 +237,19 @@ class OtherLaws(Stability):
             self.assert_near(row['critical_damping'], critical)
             self.assert_near(row['critical_velocity'], math.log(force * (mu_s - mu_k) * d_c / 0.1) / d_c)
             self.assert_roots([Fraction(1e-3), Fraction(0.1) - Fraction(critical), Fraction(1)])
+
+    def test_slip_weakening_that_heals_slides_at_what_slip_and_healing_leave(self):
+        """D = V/xi below d_c, friction mu_s - (mu_s - mu_k) V/(xi d_c); from V = xi d_c on it is constant."""
+        mu_s, mu_k, d_c, xi, velocity, damping, force = 0.4, 0.2, 5.0, 0.5, 1.0, 0.3, 10.0
+        constants = {'mu_s': mu_s, 'mu_k': mu_k, 'd_c': d_c, 'xi': xi}
+        for contact in ("'elastic'", "'rigid'"):
+            row = self.told(self.law('slip_weakening_healing', constants, contact, damping=damping))[0]
+            self.assert_near(row['friction'], mu_s - (mu_s - mu_k) * velocity / (xi * d_c), 1e-14)
+            weakening = Fraction(force) * (Fraction(mu_s) - Fraction(mu_k)) / Fraction(d_c)
+            memory = exact(1, xi)
+            closed = memory if contact == "'rigid'" else total(memory, product([-weakening / 1000], exact(1, 0)))
+            self.assert_roots(total(product(exact(1e-3, damping, 1.0), closed), product([-weakening], exact(1, 0))))
+            self.assert_near(self.told(self.law('slip_weakening_healing', {**constants, 'xi': 0.1}, contact))[0]['friction'], mu_k, 1e-15)
 
     def test_at_a_shear_cap_friction_is_constant(self):
         row = self.told(namelist({('friction', 'tau_max'): '1.5', ('slider', 'damping'): '0.02'}))[0]

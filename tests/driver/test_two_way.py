@@ -79,6 +79,11 @@ class Motion(Program):
             self.assertGreater(errors[0] / errors[1], 3.8)
             self.assertLess(errors[1], (4.9 * 0.01)**2 / 12 * 4.9 * 8)
 
+    def test_the_generalised_alpha_method_is_of_second_order_too(self):
+        errors = [self.error(0.5, dt=dt, rho_infinity='0.5') for dt in ('0.02', '0.01')]
+        self.assertGreater(errors[0] / errors[1], 3.6)
+        self.assertLess(errors[1], (4.9 * 0.01)**2 * 4.9 * 8)
+
     def test_adaptive_steps_do_the_same(self):
         for mu in (0.3, 0.5):
             coarse, fine = (self.error(mu, rtol=rtol) for rtol in ('1e-4', '1e-6'))
