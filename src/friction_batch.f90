@@ -191,7 +191,7 @@ contains
         if (this%plan%needs_time .and. .not. dtime > 1.0_wp / most) this%plan%kind = lane_none
         if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%constants)
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
-            .and. .not. this%plan%options
+            .and. this%plan%options == 0
         associate (value => this%plan%source%value)
             this%plain_constants = [value(:c_mu_0 - 1), value(c_own:c_own + 4), value(c_mu_0)]
         end associate
@@ -280,8 +280,7 @@ contains
         type(block_task) :: task
 
         task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
-            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), merge(1_c_int, 0_c_int, &
-            this%plan%options), this%dtime)
+            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), this%plan%options, this%dtime)
     end function task_of
 
     !> The same through a copy, filled up to a block, without the points that the kernel leaves.

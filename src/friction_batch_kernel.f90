@@ -12,7 +12,8 @@ module friction_batch_kernel
     use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &
         c_mu_0, c_own, c_r_0, c_squeeze, lane_ageing, lane_cotangent, lane_coulomb, &
         lane_exact_rate, lane_reciprocal, lane_slip_law, lane_static_kinetic, lane_subloading, &
-        lanes, n_constants, no_cap, rest_block, slide_block, verge, widest
+        lanes, n_constants, no_cap, rest_block, slide_block, verge, widest, with_cap, &
+        with_two_coefficients
     use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
     use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
         state_slip_weakening
@@ -31,6 +32,7 @@ module friction_batch_kernel
     real(wp), parameter :: largest = 1.0e20_wp   !! of the numbers taken: no product overflows
     real(wp), parameter :: smallest = 1.0e-100_wp   !! of the tractions taken, unless zero
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
+    real(wp), parameter :: least_length = 1.0e-150_wp   !! below that of every traction taken
 
     !> A block with all of its slip prevented.
     type :: trial_block
@@ -38,6 +40,8 @@ module friction_batch_kernel
         real(wp) :: q1(lanes), q2(lanes)   !! elastic tangential displacement [L]
         real(wp) :: start(lanes)     !! for a law that follows the path: traction at the start,
                                      !! without a cap; else -1 [F/L^2]
+        real(wp) :: length(lanes)    !! of q, where two coefficients count [L]
+        real(wp) :: stiffness(lanes) !! fall of T_eq with slip [F/L^3]
         logical :: follows           !! is there such a law?
         integer(c_int) :: moves(lanes)   !! 1 where the traction is beyond the strength, else 0
     end type trial_block
@@ -45,7 +49,7 @@ module friction_batch_kernel
     !> What traction and tangent are made of.
     type :: answer_block
         real(wp) :: t1(lanes), t2(lanes)   !! direction of the slip; 0 where nothing slides [-]
-        real(wp) :: inverse(lanes)   !! 1/(alpha_t |q|), where it slides [L^2/F]
+        real(wp) :: per_traction(lanes)   !! 1/T_eq of the trial, where it slides [L^2/F]
         real(wp) :: lever(lanes)     !! work of the traction over slip and T_eq [-]
         real(wp) :: squeezed(lanes)  !! how much the strength depends on the direction [-]
         real(wp) :: share(lanes)     !! of q that stays elastic [-]
@@ -227,7 +231,7 @@ contains
     subroutine find_slip(task, constants, trial, n_slides, slid, left, n_left)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
-        type(trial_block), intent(in) :: trial
+        type(trial_block), intent(inout) :: trial
         integer, intent(in) :: n_slides
         type(slide_block), intent(out) :: slid   !! of no account where nothing slides
         integer(c_int), intent(inout) :: left(lanes)
@@ -235,6 +239,8 @@ contains
         integer, parameter :: many = (3 * lanes) / 4   !! packing takes longer than to fill gaps
 
         n_left = 0
+        if (n_slides < lanes) call clear(slid)
+        call find_stiffness(task, constants, trial)
         if (n_slides == 0) return
         if (n_slides == lanes .or. (n_slides > many .and. task%n_own == 0)) then
             call slide_all(task, constants, trial, slid, left)
@@ -243,6 +249,40 @@ contains
         end if
         n_left = sum(left)
     end subroutine find_slip
+
+    !> Numbers for the lanes that do not slide: lanes compute before they choose.
+    pure subroutine clear(slid)
+        type(slide_block), intent(inout) :: slid
+        integer :: i
+
+        do i = 1, lanes
+            slid%slip(i) = 0.0_wp
+            slid%mu_end(i) = 0.0_wp
+            slid%r_end(i) = 0.0_wp
+            slid%resistance(i) = 0.0_wp
+            slid%d_slip(i) = 0.0_wp
+            slid%d_pressure(i) = 0.0_wp
+        end do
+    end subroutine clear
+
+    !> How the spring unloads: by alpha_t, where one coefficient counts.
+    subroutine find_stiffness(task, constants, trial)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(trial_block), intent(inout) :: trial
+        integer :: i
+
+        if (iand(task%options, with_two_coefficients) == 0) then
+            do i = 1, lanes
+                trial%stiffness(i) = constants(i, c_alpha_t)
+            end do
+        else
+            do i = 1, lanes
+                trial%length(i) = max(sqrt(trial%q1(i)**2 + trial%q2(i)**2), least_length)
+                trial%stiffness(i) = trial%rest%traction(i) / trial%length(i)
+            end do
+        end if
+    end subroutine find_stiffness
 
     !> All points of the block; those that do not slide take the numbers of one that does.
     subroutine slide_all(task, constants, trial, slid, left)
@@ -265,7 +305,7 @@ contains
             slid%r(i) = trial%rest%r(first)
             slid%mu_rest(i) = trial%rest%mu_rest(first)
             own_strength(i) = trial%rest%strength(first)
-            slid%stiffness(i) = constants(i, c_alpha_t)
+            slid%stiffness(i) = trial%stiffness(first)
             if (trial%moves(i) > 0) then
                 slid%trial(i) = trial%rest%traction(i)
                 slid%pressure(i) = trial%rest%pressure(i)
@@ -273,18 +313,9 @@ contains
                 slid%r(i) = trial%rest%r(i)
                 slid%mu_rest(i) = trial%rest%mu_rest(i)
                 own_strength(i) = trial%rest%strength(i)
+                slid%stiffness(i) = trial%stiffness(i)
             end if
         end do
-        if (task%options > 0) then
-            do i = 1, lanes
-                slid%stiffness(i) = trial%rest%traction(first) / sqrt(trial%q1(first)**2 &
-                    + trial%q2(first)**2)
-                if (trial%moves(i) > 0) then
-                    slid%stiffness(i) = trial%rest%traction(i) / sqrt(trial%q1(i)**2 + &
-                        trial%q2(i)**2)
-                end if
-            end do
-        end if
         call slide(task, constants, own_strength, slid)
         do i = 1, lanes
             if (slid%left(i) > 0.0_wp) left(i) = trial%moves(i)
@@ -316,14 +347,10 @@ contains
             packed%mu(i) = trial%rest%mu(place(i))
             packed%r(i) = trial%rest%r(place(i))
             packed%mu_rest(i) = trial%rest%mu_rest(place(i))
-            packed%stiffness(i) = constants(place(i), c_alpha_t)
+            packed%stiffness(i) = trial%stiffness(place(i))
         end do
-        if (task%options > 0) then
-            do i = 1, packed%n
-                own_strength(i) = trial%rest%strength(place(i))
-                packed%stiffness(i) = packed%trial(i) / sqrt(trial%q1(place(i))**2 &
-                    + trial%q2(place(i))**2)
-            end do
+        if (iand(task%options, with_cap) > 0) then
+            call pack_column(packed%n, place, trial%rest%strength, own_strength)
         end if
         if (task%n_own > 0) then
             do k = c_own, c_own + task%n_own - 1
@@ -387,7 +414,7 @@ contains
         real(wp) :: slip, near, verge_of_cap
         integer :: i
 
-        if (task%options == 0) then
+        if (iand(task%options, with_cap) == 0) then
             call slide_by_law(task, constants, block)
             return
         end if
@@ -395,7 +422,7 @@ contains
             trial(i) = block%trial(i)
             held(i) = 0.0_wp
             if (trial(i) <= own_strength(i) * (1.0_wp + verge)) held(i) = 1.0_wp
-            if (held(i) > 0.0_wp) block%trial(i) = 2.0_wp * own_strength(i)   ! of no account
+            if (held(i) > 0.0_wp) block%trial(i) = 1.01_wp * own_strength(i)   ! of no account
         end do
         call slide_by_law(task, constants, block)
         ! Round-off decides whether the cap holds; or it is all of a slip whose logarithm counts.
@@ -445,7 +472,15 @@ contains
         type(slide_block) :: copy
         integer :: i
 
-        copy = block
+        copy%n = block%n
+        do i = 1, block%n
+            copy%slip(i) = block%slip(i)
+            copy%mu(i) = block%mu(i)
+            copy%r(i) = block%r(i)
+            copy%mu_end(i) = block%mu_end(i)   ! of a law without variables
+            copy%r_end(i) = block%r_end(i)
+            copy%left(i) = 0.0_wp
+        end do
         select case (task%kind)
         case (lane_subloading)
             call state_subloading(constants, task%dt, copy)
@@ -486,8 +521,11 @@ contains
         real(wp) :: closed, mean, mu, r, slip, share, resistance, d_slip, d_pressure, moves
         integer :: i
 
-        call find_direction(constants, trial, slid, answer)
-        if (task%options > 0) call turn_direction(constants, trial, slid, answer)
+        if (iand(task%options, with_two_coefficients) > 0) then
+            call turn_direction(constants, trial, slid, answer)
+        else
+            call find_direction(constants, trial, slid, answer)
+        end if
         !GCC$ ivdep
         do i = 1, lanes
             moves = 0.0_wp
@@ -508,7 +546,7 @@ contains
                 d_pressure = slid%d_pressure(i)
                 mu = slid%mu_end(i)
                 r = slid%r_end(i)
-                share = resistance * answer%lever(i) * answer%inverse(i)
+                share = resistance * answer%per_traction(i)
             end if
             answer%share(i) = share
             statev(i, 5) = mu
@@ -541,14 +579,14 @@ contains
 
         do i = 1, lanes
             force = max(trial%rest%traction(i), least)
-            total = constants(i, c_alpha_t)
-            if (trial%moves(i) > 0) total = max(total + slid%d_slip(i), epsilon(1.0_wp) * total)
+            total = max(constants(i, c_alpha_t) + slid%d_slip(i), epsilon(1.0_wp) &
+                * constants(i, c_alpha_t))
             shared = 1.0_wp / (force * total)   ! one division for two
             moves = merge(constants(i, c_alpha_t), 0.0_wp, trial%moves(i) > 0)
-            answer%inverse(i) = total * shared
+            answer%per_traction(i) = total * shared
             answer%coupling(i) = moves * force * shared
-            answer%t1(i) = trial%q1(i) * (moves * answer%inverse(i))
-            answer%t2(i) = trial%q2(i) * (moves * answer%inverse(i))
+            answer%t1(i) = trial%q1(i) * (moves * answer%per_traction(i))
+            answer%t2(i) = trial%q2(i) * (moves * answer%per_traction(i))
             answer%lever(i) = 1.0_wp
             answer%squeezed(i) = 0.0_wp
         end do
@@ -559,23 +597,24 @@ contains
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
-        type(answer_block), intent(inout) :: answer
-        real(wp) :: length, force, stiffness, total, moves
+        type(answer_block), intent(out) :: answer
+        real(wp) :: length, force, total, moves, shared, per_length
         integer :: i
 
         do i = 1, lanes
-            length = max(sqrt(trial%q1(i)**2 + trial%q2(i)**2), least)
-            force = max(trial%rest%traction(i), constants(i, c_alpha_t) * least)
-            stiffness = force / length   ! fall of T_eq with slip
             moves = merge(1.0_wp, 0.0_wp, trial%moves(i) > 0)
-            answer%t1(i) = moves * trial%q1(i) / length
-            answer%t2(i) = moves * trial%q2(i) / length
-            answer%lever(i) = constants(i, c_alpha_t) * length / force
-            answer%inverse(i) = 1.0_wp / (constants(i, c_alpha_t) * length)
+            length = trial%length(i)
+            force = max(trial%rest%traction(i), smallest)
+            ! length times the sum of stiffnesses
+            total = max(force + slid%d_slip(i) * length, epsilon(1.0_wp) * force)
+            shared = 1.0_wp / (force * length)   ! one division for two
+            answer%per_traction(i) = length * shared
+            per_length = moves * force * shared
+            answer%t1(i) = trial%q1(i) * per_length
+            answer%t2(i) = trial%q2(i) * per_length
+            answer%lever(i) = constants(i, c_alpha_t) * length * answer%per_traction(i)
             answer%squeezed(i) = moves * (constants(i, c_squeeze)**2 - 1.0_wp) * answer%lever(i)
-            total = stiffness
-            if (trial%moves(i) > 0) total = max(total + slid%d_slip(i), epsilon(1.0_wp) * total)
-            answer%coupling(i) = moves * constants(i, c_alpha_t) / total
+            answer%coupling(i) = moves * constants(i, c_alpha_t) * length / total
         end do
     end subroutine turn_direction
 

@@ -8,7 +8,8 @@ module friction_lane_constants
     use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_own, c_r_0, c_squeeze, &
         constants_source, lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_none, &
         lane_reciprocal, lane_slip_law, lane_slip_weakening, lane_static_kinetic, &
-        lane_subloading, lanes, n_constants, n_own, no_cap
+        lane_subloading, lanes, n_constants, n_own, no_cap, with_cap, &
+        with_two_coefficients
     use friction_law, only : law_state, named_law
     use friction_law_choice, only : choose_law, choose_own_law, first_own_prop, law_storage, &
         prop_alpha_n, prop_alpha_t, prop_law
@@ -28,7 +29,7 @@ module friction_lane_constants
     !> The lanes of a law and its options, and how its constants become theirs.
     type :: lane_plan
         integer(c_int) :: kind = lane_none   !! see module friction_lane_block
-        logical :: options = .false.    !! a shear cap or two coefficients, at any point
+        integer(c_int) :: options = 0   !! sum of those that a point has
         logical :: needs_time = .false. !! no increment without time
         type(constants_source) :: source   !! its values are those of the point that the plan was
                                            !! made for
@@ -65,8 +66,10 @@ contains
         plan%source%value(c_cap) = no_cap
         if (surface%tau_max < most) plan%source%value(c_cap) = surface%tau_max
         plan%source%value(c_squeeze) = plane%squeeze
-        plan%options = surface%tau_max < most .or. abs(plane%squeeze - 1.0_wp) > 0.0_wp
-        if (varied .and. option <= nprops) plan%options = .true.
+        if (surface%tau_max < most .or. (varied .and. option <= nprops)) plan%options = with_cap
+        if (abs(plane%squeeze - 1.0_wp) > 0.0_wp .or. (varied .and. option + 1 <= nprops)) then
+            plan%options = plan%options + with_two_coefficients
+        end if
         if (option <= nprops) plan%source%place(c_cap) = option
         if (option + 1 <= nprops) plan%source%place(c_squeeze) = option + 1
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)

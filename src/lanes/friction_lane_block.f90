@@ -36,6 +36,9 @@ module friction_lane_block
         lane_cotangent = 3, lane_reciprocal = 4, lane_coulomb = 5, lane_static_kinetic = 6, &
         lane_ageing = 7, lane_slip_law = 8, lane_slip_weakening = 9
 
+    !> Options of laws.
+    integer(c_int), parameter, public :: with_cap = 1, with_two_coefficients = 2
+
     !> What a call of the batch kernel is about.
     type, bind(C), public :: block_task
         integer(c_int64_t) :: stride   !! distance of components, `lanes` or more
@@ -43,8 +46,7 @@ module friction_lane_block
         integer(c_int) :: ndir         !! components of du: 2 or 3
         integer(c_int) :: n_own        !! constants of the law's own, of each point; 0 where all
                                        !! points share them
-        integer(c_int) :: options      !! 1 where a point has a shear cap or two coefficients, else
-                                       !! 0
+        integer(c_int) :: options      !! sum of those that a point has
         real(c_double) :: dt           !! [T]
     end type block_task
 
