@@ -251,6 +251,22 @@ class OtherLaws(Stability):
             self.assert_roots(total(product(exact(1e-3, damping, 1.0), closed), product([-weakening], exact(1, 0))))
             self.assert_near(self.told(self.law('slip_weakening_healing', {**constants, 'xi': 0.1}, contact))[0]['friction'], mu_k, 1e-15)
 
+    def test_flash_heating_weakens_as_its_steady_friction_falls(self):
+        """`k_c = -(sigma/d_c) df_ss/d(ln v) (1 + M v^2/(sigma a d_c))`: Rice and Ruina 1983, for any steady friction."""
+        a, b, d_c, v_0, f_0, f_w, v_w, n = 0.016, 0.02, 0.01, 1e-6, 0.7, 0.2, 0.1, 8.0
+        constants = {'a': a, 'b': b, 'd_c': d_c, 'v0': v_0, 'f0': f_0, 'f_w': f_w, 'v_w': v_w}
+        for mass, velocity in itertools.product((0.0, 1e-3), (1e-3, 0.1, 0.3)):
+            low = a * math.asinh(velocity / (2 * v_0) * math.exp((f_0 - b * math.log(velocity / v_0)) / a))
+            hot = (velocity / v_w)**n
+            share = (1 + hot)**(-1 / n)
+            steady = f_w + (low - f_w) * share
+            slope = (a - b) * math.tanh(low / a) * share - (low - f_w) * share * hot / (1 + hot)
+            direct = a * math.tanh(steady / a)
+            text = self.law('flash_heating', constants, "'rigid'", mass=mass, damping=0.0)
+            row = self.told(text.replace('velocity = 1\n', f'velocity = {velocity!r}\n'))[0]
+            self.assert_near(row['friction'], steady, 1e-13)
+            self.assert_near(row['critical_stiffness'], -10 * slope / d_c * (1 + mass * velocity**2 / (10 * direct * d_c)))
+
     def test_at_a_shear_cap_friction_is_constant(self):
         row = self.told(namelist({('friction', 'tau_max'): '1.5', ('slider', 'damping'): '0.02'}))[0]
         self.assertEqual(row['stability'], 'stable')
