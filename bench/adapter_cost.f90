@@ -22,7 +22,7 @@ program adapter_cost
 
 contains
 
-    !> Pressed, then sheared to and fro: stick and slip in turn.
+    !> Pressed, then sheared back and forth: stick and slip in turn.
     pure function increment(k) result(du)
         integer, intent(in) :: k
         real(dp) :: du(3)

@@ -133,8 +133,8 @@ contains
         if (rate <= 0.0_dp) rate = fast * self%driving
     end function limit
 
-    !> By how much does the force at a turn within a step exceed those at its ends? More than steps
-    !> change it is not to be believed: velocities at the ends of long steps are uncertain.
+    !> By how much does the force at a turn within a step exceed those at its ends? An excess larger
+    !> than the change in a step is not accepted: velocities at the ends of long steps are uncertain.
     pure function beyond(before, now, turn) result(excess)
         type(moment), intent(in) :: before, now, turn
         real(dp) :: excess   !! [F]

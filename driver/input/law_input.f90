@@ -93,7 +93,7 @@ contains
         value = real(i, dp)
     end subroutine read_choice
 
-    !> A block slides to and fro along one line, where orthotropic friction is isotropic.
+    !> A block slides back and forth along one line, where orthotropic friction is isotropic.
     subroutine refuse_orthotropy(file)
         type(namelist_file), intent(inout) :: file
         character(len=*), parameter :: keys(2) = ['mu_ratio ', 'direction']

@@ -41,7 +41,7 @@ module continuous_steps
         real(dp) :: natural(controlled) = 0.0_dp    !! sizes of the unknowns
         real(dp) :: weights(controlled) = 0.0_dp    !! inverse of the errors tolerated in a step
         logical :: implicit = .false.           !! steps by Rodas4
-        integer :: stiff = 0, calm = 0          !! steps that spoke for the other method
+        integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
         real(dp) :: open_below = 0.0_dp         !! normal traction that counts as none [F/L^2]
     contains
@@ -446,8 +446,8 @@ contains
         tried%y(damped) = self%y(damped) + 0.5_dp * self%system%damping * sum(v) * way
     end subroutine damp
 
-    !> What the error of each unknown is held against: what moves, but not less than what the
-    !> contact rings by.
+    !> What the error of each unknown is compared with: its own size, but not less than the
+    !> amplitude of the contact's ringing.
     subroutine set_weights(self, t)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t   !! [T]
@@ -656,7 +656,8 @@ contains
         end associate
     end subroutine jump
 
-    !> The other method, when fifteen steps have spoken for it, or three the other way.
+    !> Changes the method after fifteen stiff steps of the explicit one, or three calm ones of the
+    !> implicit one.
     subroutine choose_method(self, tried)
         class(continuous), intent(inout) :: self
         type(trial), intent(in) :: tried

@@ -45,7 +45,7 @@ contains
 
     !> `friction_update`, also for a host that asks for the forces as they stand, with neither time
     !> nor motion. Laws of the slip rate cannot do without time; an instant leaves all as it is.
-    !> Sizes are explicit: what has none is copied to and fro.
+    !> Sizes are explicit: what has none is copied in and out.
     pure subroutine host_update(ndir, du, dtime, nprops, props, statev, traction, tangent, status)
         integer, intent(in) :: ndir                     !! 2 or 3
         real(wp), intent(in) :: du(ndir)           !! as in `friction_update`, and so on [L]

@@ -561,7 +561,7 @@ class AdaptiveSteps(Columns):
             self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 30000)
 
     def test_energy_balance_closes_under_a_shear_cap(self):
-        # sliding to and fro while the load falls; the cap holds at first
+        # sliding back and forth while the load falls; the cap holds at first
         text = namelist({('friction', 'scheme'): "'exact_rate'", ('friction', 'tau_max'): '1.5',
                          ('friction', 'kappa'): '0', ('friction', 'xi'): '0', ('drive', 'normal'): '10, 1',
                          ('drive', 'duration'): '1, 10', ('drive', 'normal_change'): "'ramp'",

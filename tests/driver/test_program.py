@@ -120,7 +120,7 @@ class GoodInput(Program):
                                    delta=1e-12)
 
     def test_a_nearly_rigid_contact_slips_as_a_softer_one_does(self):
-        # Newton's method goes to and fro between stick and slip there; it tries whether the block sticks. The contact is so stiff
+        # Newton's method alternates between stick and slip there; it tries whether the block sticks. The contact is so stiff
         # that the event no longer depends on it; the steps are an 80th of the event.
         onsets = []
         for alpha_t in ('1e6', '1e9'):

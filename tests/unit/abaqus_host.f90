@@ -1,4 +1,4 @@
-!> What Abaqus brings along for its user subroutines: here only its ear for errors.
+!> What Abaqus provides for its user subroutines: here only its routine for error messages.
 module abaqus_host
     implicit none
     private
