@@ -146,6 +146,8 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     if size < len(constants):
         raise ValueError(f'fit: {len(constants)} free constants, but the records give only {size} numbers, because their '
                          'events scatter: free fewer, or add records')
+    for target in targets:
+        _check_units(target, _namelist.merge(base, target.analysis.record.settings), constants)
     journal = Journal(checkpoint, _fingerprint(base, constants, targets, seed, starts))
     with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
         problem = Problem(base, constants, targets, _SIMULATE, pool, journal,
@@ -290,11 +292,39 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
         if target.analysis.scattered:
             remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
         if np.sqrt(np.mean(part**2)) > 5.0:
-            slope = compare(problem, candidate, target.analysis)['slope']
+            told = compare(problem, candidate, target.analysis)
             remarks.append(f'{name}: the model does not follow this record (misfit {np.sqrt(np.mean(part**2)):.2g} standard '
-                           f'deviations); between events its force rises by {slope["measured"]:.4g} per unit of time, the '
-                           f'model\'s by {slope["computed"]:.4g}')
+                           f'deviations): its peaks are {told["peak"]["measured"]:.4g} and rise by {told["slope"]["measured"]:.4g} '
+                           f'per unit of time, the model\'s {told["peak"]["computed"]:.4g} and '
+                           f'{told["slope"]["computed"]:.4g}')
     return remarks
+
+
+def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) -> None:
+    """Refuses a force that rises between events at quite another rate than the rig's numbers allow: a search over simulations
+    in wrong units would take long and find nothing."""
+    numbers = [settings.get(group, {}).get(key) for group, key in
+               (('slider', 'stiffness'), ('drive', 'velocity'), ('friction', 'alpha_t'), ('slider', 'area'))]
+    numbers[3] = 1.0 if numbers[3] is None else numbers[3]
+    for constant in constants:
+        if (constant.group, constant.key) == ('friction', 'alpha_t'):
+            numbers[2] = constant.high
+        elif constant.group != 'friction' and not constant.is_factor:
+            return
+    if not all(isinstance(number, (int, float)) and number != 0.0 for number in numbers):
+        return
+    stiffness, velocity, alpha_t, area = numbers
+    analysis = target.analysis
+    slope = float(medians(analysis.time, analysis.force, analysis.falls)[0][-1])
+    fastest = stiffness * abs(velocity)
+    slowest = fastest / (1.0 + stiffness / (area * alpha_t))
+    if slope > WRONG_UNITS * fastest or slope < slowest / WRONG_UNITS:
+        analysis.record.refuse(
+            f'between events the force rises by {slope:.4g} per unit of time, but stiffness times velocity is {fastest:.4g}: the '
+            'units of time or force (time_factor, force_factor), the stiffness or the velocity are not those of the record')
+
+
+WRONG_UNITS = 5.0    # times faster, or slower, than the rig's numbers say
 
 
 def _rig_remarks(target: Target, slider: dict, drive: dict) -> list[str]:

@@ -1,6 +1,7 @@
 """Measured records of a force against time, and what they show: noise, events, their scatter."""
 from __future__ import annotations
 
+import csv
 import dataclasses
 import pathlib
 from typing import Any
@@ -30,8 +31,22 @@ class Record:
 
     def __post_init__(self) -> None:
         for name in ('time', 'force'):
-            object.__setattr__(self, name, np.asarray(getattr(self, name), float).ravel())
+            object.__setattr__(self, name, self._numbers(name))
         self._check()
+
+    def _numbers(self, name: str) -> np.ndarray:
+        """The time or the force as an array of one dimension."""
+        values = np.asarray(getattr(self, name))
+        if values.dtype.kind == 'c':
+            self.refuse(f'{name}: numbers are needed, not complex ones')
+        if values.dtype.kind not in 'fiu':
+            try:
+                values = np.array([float(value) for value in values.ravel()])
+            except (TypeError, ValueError) as error:
+                self.refuse(f'{name}: numbers are needed ({error})')
+        if max(values.shape, default=0) != values.size:
+            self.refuse(f'{name} has the shape {values.shape}: one number a sample is needed')
+        return np.asarray(values, float).ravel()
 
     @classmethod
     def read(cls, path: str | pathlib.Path, *, time: str = 'time', force: str = 'spring_force', time_factor: float = 1.0,
@@ -77,22 +92,79 @@ class Record:
 def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
     """Columns of a file, by name."""
     if path.suffix == '.mat':
-        from scipy.io import loadmat
-        table = {key: np.ravel(value) for key, value in loadmat(path).items() if not key.startswith('__')}
-    else:
-        import pandas
-        frame = pandas.read_csv(path, sep=None, engine='python', comment='#', skipinitialspace=True)
-        frame.columns = [str(column).strip() for column in frame.columns]
-        table = frame
-    columns = []
+        return _matlab_columns(path, names)
+    lines = _text(path).splitlines()
+    separator, first, places = _header(path, lines, names)
+    columns: list[list[float]] = [[] for _ in names]
+    for number, line in enumerate(lines[first:], first + 1):
+        if not line.strip() or line.lstrip().startswith('#'):
+            continue
+        cells = _cells(line, separator)
+        try:
+            values = [_number(cells[place], separator) for place in places]
+        except (IndexError, ValueError):
+            if number == first + 1:
+                continue   # units
+            raise RecordError(f'{path}, line {number}: {line.strip()[:60]!r} has no number for each of '
+                              + ', '.join(names)) from None
+        for column, value in zip(columns, values):
+            column.append(value)
+    return [np.array(column) for column in columns]
+
+
+def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    try:
+        table = loadmat(path)
+    except (MatReadError, NotImplementedError, ValueError, TypeError) as error:
+        raise RecordError(f'{path}: not a MATLAB file that can be read ({error})') from None
     for name in names:
         if name not in table:
-            raise RecordError(f'{path}: no column {name!r}; there are ' + ', '.join(map(str, table)))
-        try:
-            columns.append(np.asarray(table[name], float))
-        except (TypeError, ValueError):
-            raise RecordError(f'{path}: column {name!r} holds what is not a number') from None
-    return columns
+            raise RecordError(f'{path}: no variable {name!r}; there are '
+                              + ', '.join(key for key in table if not key.startswith('__')))
+    return [table[name] for name in names]
+
+
+def _text(path: pathlib.Path) -> str:
+    """The text of a file, whatever wrote it."""
+    content = path.read_bytes()
+    if content.startswith((b'\xff\xfe', b'\xfe\xff')):
+        return content.decode('utf-16', 'replace')
+    try:
+        return content.decode('utf-8-sig')
+    except UnicodeDecodeError:
+        return content.decode('latin-1')
+
+
+def _header(path: pathlib.Path, lines: list[str], names: tuple[str, ...]) -> tuple[str | None, int, list[int]]:
+    """What separates columns (None: spaces), the first line after their names, and their places."""
+    for number, line in enumerate(lines[:1000]):
+        for separator in (';', '\t', ',', None):
+            cells = _cells(line.lstrip('#'), separator)
+            if all(name in cells for name in names):
+                return separator, number + 1, [cells.index(name) for name in names]
+    first = next((line for line in lines if line.strip()), '')
+    if not first:
+        raise RecordError(f'{path}: the file is empty')
+    separator = next((separator for separator in (';', '\t', ',') if separator in first), None)
+    missing = next(name for name in names if name not in _cells(first, separator))
+    raise RecordError(f'{path}: no column {missing!r}; there are ' + ', '.join(_cells(first, separator)[:20]))
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    """The cells of a line, without quotes around them."""
+    if separator is None:
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
+
+
+def _number(cell: str, separator: str | None) -> float:
+    """A number, also with a decimal comma; NaN for an empty cell."""
+    if ',' in cell and '.' not in cell:
+        cell = cell.replace(',', '.')
+    return float(cell) if cell else float('nan')
 
 
 @dataclasses.dataclass(frozen=True)
@@ -208,11 +280,14 @@ def analyse(record: Record) -> Analysis:
     if np.median(force) < 0.0 and np.median(force) < -3.0 * noise:
         record.refuse('the force is negative: it acts against the drive. Turn its sign (force_factor=-1), or the '
                       "drive's velocity")
+    force, warnings = _without_spikes(record, force, noise)
     window, threshold, falls = _events(record, time, force, noise)
     period = np.median(np.diff(falls.middle))
     _check_gaps(record, period)
-    warnings = []
-    force, falls, drift = _without_drift(record, time, force, falls)
+    warnings += _check_shape(record, falls)
+    from_rest, late = _begins_at_rest(record, time, smooth(force, window), falls)
+    warnings += late
+    force, falls, drift = _without_drift(record, time, force, falls, from_rest)
     if drift:
         warnings.append(f'{record.name}: {drift}')
     fine = min(period / SAMPLES_A_PERIOD, np.median(falls.end - falls.onset) / SAMPLES_A_FALL)
@@ -226,9 +301,6 @@ def analyse(record: Record) -> Analysis:
     drops = falls.peak - falls.trough
     # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
     scattered = max(_spread(gaps) / np.median(gaps), _spread(drops[1:]) / np.median(drops)) > 0.1
-    from_rest = record.from_rest
-    if from_rest is None:
-        from_rest = bool(smooth(force, window)[0] < 0.25 * np.median(falls.peak))
     return Analysis(record, time, force, coarser, noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings))
 
 
@@ -248,9 +320,13 @@ def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
         time, force = even, np.interp(even, time, force)
     else:
         time = step * np.arange(time.size)
-    # Second differences see neither the level nor the slope of the force.
-    noise = _spread(np.diff(force, 2)) / np.sqrt(6.0)
-    return time, force, noise
+    # Second differences see neither the level nor the slope of the force. Where most of them are 0, the force is known in
+    # steps, or rests.
+    second = np.diff(force, 2)
+    noise = _spread(second)
+    if noise == 0.0 and np.count_nonzero(second) > 3:
+        noise = _spread(second[second != 0.0])
+    return time, force, noise / np.sqrt(6.0)
 
 
 def _events(record: Record, time: np.ndarray, force: np.ndarray, noise: float) -> tuple[int, float, Falls]:
@@ -296,6 +372,32 @@ def _refuse_without_events(record: Record, count: int, noise: float, range_: flo
                   f'of the force (noise {noise:.3g}, range of the force {range_:.3g})')
 
 
+def _without_spikes(record: Record, force: np.ndarray, noise: float) -> tuple[np.ndarray, list[str]]:
+    """Samples that stand out alone, or two together, take the median of their neighbours; more than a few are left alone."""
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(force, 2, mode='edge'), 5)
+    middle = np.median(around, axis=1)
+    range_ = float(np.subtract(*np.percentile(force[force.size // 4:], [98, 2])))
+    spikes = np.abs(force - middle) > max(15.0 * noise, 0.2 * range_)
+    count = int(np.count_nonzero(spikes))
+    if not 0 < count <= max(1, force.size // 50):
+        return force, []
+    return np.where(spikes, middle, force), [f'{record.name}: {count} samples stand out from their neighbours and were left out, '
+                                             f'the first at {record.time[int(np.argmax(spikes))]:g}']
+
+
+def _check_shape(record: Record, falls: Falls) -> list[str]:
+    """In stick-slip the force rises slowly and falls fast."""
+    falling = float(np.median(falls.end - falls.onset))
+    rising = float(np.median(falls.onset[1:] - falls.end[:-1]))
+    if falling > 2.0 * rising:
+        record.refuse(f'the force falls slowly ({falling:.3g}) and rises fast ({rising:.3g}): it has the wrong sign. Turn it '
+                      '(force_factor=-1), with the offset that makes the force of a slack spring 0')
+    if falling > 0.7 * rising:
+        return [f'{record.name}: the force rises ({rising:.3g}) hardly more slowly than it falls ({falling:.3g}): this is an '
+                'oscillation or noise rather than stick-slip']
+    return []
+
+
 def _check_gaps(record: Record, period: float) -> None:
     steps = np.diff(record.time)
     i = int(np.argmax(steps))
@@ -304,8 +406,29 @@ def _check_gaps(record: Record, period: float) -> None:
                       f'({period:.3g}); take the part before or after (start, end)')
 
 
-def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[np.ndarray, Falls, str]:
-    """Takes a steady drift of the peaks out, and says so; a drift of more than the force itself is refused."""
+def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[bool, list[str]]:
+    """Does the record begin with the loading of a slack spring? Not where the drive starts some time later: the moment is not
+    known well enough."""
+    if record.from_rest is not None:
+        return record.from_rest, []
+    peak = float(np.median(falls.peak))
+    if not force[0] < 0.25 * peak:
+        return False, []
+    first = falls.onset[0]
+    rise = force[0] + np.array([0.2, 0.6]) * (falls.peak[0] - force[0])
+    before = time <= first
+    early, later = (float(time[before][np.argmax(force[before] > level)]) for level in rise)
+    start = early - 0.5 * (later - early)   # where a straight rise began
+    if start < 0.15 * first:
+        return True, []
+    return False, [f'{record.name}: the force begins to rise at about {record.time[0] + start:g} only: the first loading is not '
+                   'fitted. If the drive starts then, begin the record there (start)']
+
+
+def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls,
+                   from_rest: bool) -> tuple[np.ndarray, Falls, str]:
+    """Takes a steady drift of the peaks out, and says so; a drift of more than the force itself is refused. The force of a
+    spring that is slack at the start is right there, that of others in the middle."""
     late = falls.part(slice(1, None))
     if len(late) < 4:
         return force, falls, ''
@@ -314,16 +437,13 @@ def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: F
     error = np.std(residual) / (np.std(late.onset) * np.sqrt(len(late)))
     drift = slope * (late.onset[-1] - late.onset[0])
     drop = float(np.median(late.peak - late.trough))
-    if abs(drift) < 0.1 * drop or abs(slope) < 5.0 * error or abs(drift) < 2.0 * np.std(residual):
+    if abs(drift) < 0.03 * drop or abs(slope) < 5.0 * error or abs(drift) < 2.0 * np.std(residual):
         return force, falls, ''
     level = float(np.median(late.peak))
     if abs(drift) > 0.5 * level:
         record.refuse(f'the peaks drift by {drift:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
                       'that changes so much is not what the model describes')
-    middle = 0.5 * (late.onset[0] + late.onset[-1])
-    trend = slope * (np.clip(time, late.onset[0], late.onset[-1]) - middle)
-    if time[0] < late.onset[0]:   # the first loading starts from its own zero
-        trend = np.where(time < late.onset[0], trend * np.clip(time / late.onset[0], 0.0, 1.0), trend)
+    trend = slope * (time - (0.0 if from_rest else 0.5 * (late.onset[0] + late.onset[-1])))
     return force - trend, dataclasses.replace(
         falls, peak=falls.peak - np.interp(falls.onset, time, trend),
         trough=falls.trough - np.interp(falls.end, time, trend)), (

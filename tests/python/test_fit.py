@@ -156,6 +156,83 @@ class Records(unittest.TestCase):
         self.assertEqual(clean.warnings, ())
         np.testing.assert_allclose(np.ptp(found.falls.peak[1:]), np.ptp(clean.falls.peak[1:]), atol=0.1)
 
+    def test_a_turned_force_with_an_offset_is_refused_by_its_shape(self):
+        self.refused(self.time, 5.0 - self.force, 'falls slowly .* and rises fast .* wrong sign')
+        walk = np.cumsum(np.random.default_rng(1).normal(size=4000))
+        for time, force in ((self.time, 3.0 + np.sin(5.0 * self.time)), (np.arange(4000.0), 20.0 - walk.min() + walk)):
+            told = analyse(stickslip.Record(time, force)).warnings
+            self.assertTrue(any('oscillation or noise' in warning for warning in told), told)
+
+    def test_single_samples_that_stand_out_are_left_out_and_told(self):
+        draw = np.random.default_rng(4)
+        places = draw.choice(np.arange(100, self.time.size, 20), 8, replace=False)
+        force = self.force.copy()
+        force[places] = draw.choice([0.0, 50.0], 8)
+        found, clean = (analyse(stickslip.Record(self.time, values)) for values in (force, self.force))
+        self.assertRegex(found.warnings[0], '8 samples stand out')
+        np.testing.assert_allclose(found.falls.middle, clean.falls.middle, atol=0.02)
+
+    def test_a_drive_that_starts_late_is_told(self):
+        idle = np.arange(0.0, 20.0, 0.01)
+        found = analyse(stickslip.Record(np.concatenate([idle, 20.0 + self.time]), np.concatenate([0.0 * idle, self.force])))
+        self.assertFalse(found.from_rest)
+        self.assertRegex(found.warnings[0], 'begins to rise at about (19.9|20.0)')
+        self.assertGreater(found.noise, 0.0)
+
+    def test_a_drift_from_a_slack_start_leaves_the_start_where_it_was(self):
+        found = analyse(stickslip.Record(self.time, self.force + 0.02 * self.time))
+        self.assertRegex(found.warnings[0], 'drift by 0.1[78]')
+        np.testing.assert_allclose(found.falls.peak, analyse(stickslip.Record(self.time, self.force)).falls.peak, atol=0.04)
+
+    def test_wrong_units_are_told_before_the_search(self):
+        for time, force in ((1e3 * self.time, self.force), (self.time, 1e3 * self.force), (self.time, 1e-3 * self.force)):
+            with self.assertRaisesRegex(stickslip.RecordError, 'stiffness times velocity is 1: the units'):
+                stickslip.fit(stickslip.Record(time, force), INPUT, **SETTINGS)
+
+    def test_arrays_that_are_no_numbers_are_told(self):
+        t, force = self.time, self.force
+        for time, pull, words in ((['a'] * 60, ['b'] * 60, 'time: numbers are needed'), (t, [None] * t.size, 'force: numbers'),
+                                  (np.stack([t, t]), np.stack([force, force]), r'time has the shape \(2, 1701\)'),
+                                  (t, force + 0j, 'not complex'), ([], [], '0 samples')):
+            self.refused(time, pull, words)
+        self.assertEqual(stickslip.Record(t[:, None], force[None, :]).force.shape, t.shape)
+
+    def test_files_of_many_writers_are_read(self):
+        plain = [f'{t:.4f},{force:.5f}' for t, force in zip(self.time, self.force)]
+        commas = [line.replace(',', ';').replace('.', ',') for line in plain]
+        texts = {'plain': ['time,spring_force', *plain], 'decimal commas': ['time;spring_force', *commas],
+                 'decimal commas, tabs': ['time\tspring_force', *(line.replace(';', '\t') for line in commas)],
+                 'quoted': ['"time","spring_force"', *('"' + line.replace(';', '","') + '"' for line in commas)],
+                 'spaces': ['time   spring_force', *(line.replace(',', '   ') for line in plain)],
+                 'units': ['time,spring_force', 's,N', *plain], 'head': ['Rig 3', '', 'date: today', 'time,spring_force', *plain],
+                 'comments': ['# time,spring_force', '# made by hand', *plain], 'others': ['n,spring_force,time', *(
+                     f'{k},' + ','.join(reversed(line.split(','))) for k, line in enumerate(plain))]}
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'rig.csv')
+            for kind, lines in texts.items():
+                for end, code in (('\n', 'utf-8'), ('\r\n', 'utf-8-sig'), ('\n', 'utf-16')):
+                    path.write_bytes(end.join(lines).encode(code))
+                    read = stickslip.Record.read(path)
+                    np.testing.assert_allclose(read.force, self.force, atol=1e-5, err_msg=f'{kind} {code}')
+            path.write_bytes('\n'.join(['time,spring_force,\xb5', *(f'{line},1' for line in plain)]).encode('latin-1'))
+            np.testing.assert_allclose(stickslip.Record.read(path).time, self.time, atol=1e-4)
+
+    def test_files_that_cannot_be_read_are_told(self):
+        plain = [f'{t:.4f},{force:.5f}' for t, force in zip(self.time, self.force)]
+        head = 'time,spring_force'
+        with tempfile.TemporaryDirectory() as folder:
+            for name, lines, words in (('cut.csv', [head, *plain, '17.'], "cut.csv, line 1703: '17.' has no number for each"),
+                                       ('text.csv', [head, *plain[:5], 'pause', *plain], "line 7: 'pause'"),
+                                       ('none.csv', plain, "no column 'time'; there are 0.0000"), ('empty.csv', [], 'is empty'),
+                                       ('gap.csv', [head, '0,', *plain[1:]], 'sample 1 of 1701 is not a finite number'),
+                                       ('no.mat', ['text'], 'not a MATLAB file')):
+                path = pathlib.Path(folder, name)
+                path.write_text('\n'.join(lines))
+                with self.assertRaisesRegex(stickslip.RecordError, words):
+                    stickslip.Record.read(path)
+            with self.assertRaises(OSError):
+                stickslip.Record.read(pathlib.Path(folder, 'missing.csv'))
+
     def test_offsets_units_and_starts_do_not_matter(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, 'rig.txt')
