@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ._optional import needed
 from ._records import find_falls, smooth
 
 if TYPE_CHECKING:
@@ -18,10 +19,9 @@ EVENTS_SHOWN = 12     # of a long record, on the common axis
 
 def draw(fit: Fit) -> matplotlib.figure.Figure:
     """A row a record."""
-    from matplotlib.figure import Figure
 
     targets = fit._targets
-    figure = Figure(figsize=(12, 3.4 * len(targets)), layout='constrained')
+    figure = needed('matplotlib.figure', 'fit').Figure(figsize=(12, 3.4 * len(targets)), layout='constrained')
     for (together, cycles, rest), target in zip(figure.subplots(len(targets), 3, squeeze=False,
                                                                 width_ratios=(2, 1.2, 1.2)), targets):
         analysis = target.analysis

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ._optional import needed
 from .laws import Law
 
 Settings = dict[str, dict[str, Any]]
@@ -32,11 +33,7 @@ def groups_of(source: str | pathlib.Path | dict) -> Settings:
                 raise TypeError(f'group {group}: a dict of keys is needed, not {keys!r}')
             groups[group.lower()] = {key.lower(): value for key, value in keys.items()}
         return groups
-    try:
-        import f90nml
-    except ImportError as error:
-        raise ImportError("stickslip: reading namelists needs f90nml: pip install 'stickslip[run]'") from error
-    parsed = f90nml.reads(text_of(source)).todict()
+    parsed = needed('f90nml', 'run').reads(text_of(source)).todict()
     return {group: dict(keys) for group, keys in parsed.items() if isinstance(keys, dict)}
 
 

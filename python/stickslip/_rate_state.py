@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._optional import needed
 from ._run import spring_force
 from .laws import RateAndState
 
@@ -52,8 +53,7 @@ class RateStateFit:
 
     def plot(self, path: str | pathlib.Path | None = None):
         """Draws record and model, and what is left over. path: where to save the picture. Gives the figure."""
-        from matplotlib.figure import Figure
-        figure = Figure(figsize=(8, 5), layout='constrained')
+        figure = needed('matplotlib.figure', 'fit').Figure(figsize=(8, 5), layout='constrained')
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         above.plot(self.time, self.friction, lw=0.5, color='0.6', label='measured')
         above.plot(self.time, self.model, lw=1.2, label='rate and state')
@@ -86,8 +86,7 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: Sequenc
     explain. Errors allow for what is left over being correlated from sample to sample. Raises ValueError where the
     record cannot be fitted; the text says why.
     """
-    from scipy.optimize import least_squares
-    from scipy.stats import qmc
+    least_squares, qmc = needed('scipy.optimize', 'fit').least_squares, needed('scipy.stats', 'fit').qmc
 
     record = _prepare(time, friction, changes, displacement, velocity)
     limits = {**record.default_bounds(), **(bounds or {})}

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ._optional import needed
+
 
 class RecordError(ValueError):
     """A record that cannot be fitted; the text says why, where, and what to do."""
@@ -113,12 +115,10 @@ def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray
 
 
 def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
+    io = needed('scipy.io', 'fit')
     try:
-        table = loadmat(path)
-    except (MatReadError, NotImplementedError, ValueError, TypeError) as error:
+        table = io.loadmat(path)
+    except (io.matlab.MatReadError, NotImplementedError, ValueError, TypeError) as error:
         raise RecordError(f'{path}: not a MATLAB file that can be read ({error})') from None
     for name in names:
         if name not in table:

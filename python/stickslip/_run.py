@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _namelist, _program
+from ._optional import needed
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -42,8 +43,7 @@ class Run:
 
         path: where to save the picture, PNG, PDF or SVG by its ending.
         """
-        from matplotlib.figure import Figure
-        figure = Figure(figsize=(8, 5), layout='constrained')
+        figure = needed('matplotlib.figure', 'run').Figure(figsize=(8, 5), layout='constrained')
         force, coefficient = figure.subplots(2, 1, sharex=True)
         table = self.table.iloc[::max(1, len(self.table) // 100_000)]
         force.plot(table['time'], table['spring_force'], lw=1, label='spring')
@@ -71,8 +71,7 @@ def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
     Raises InputError with every fault of the input, RunError where the run fails. Warnings of the program are in
     `warnings` and are given as Python warnings, too. Several runs may go on at once, each in its thread.
     """
-    import pandas
-
+    pandas = needed('pandas', 'run')
     name = 'input'
     if not isinstance(input, dict) and not _namelist.is_text(input):
         name = str(input)

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _namelist
 from ._features import FLOOR, Target, median_of_blocks, medians, outline
+from ._optional import needed
 from ._records import find_falls, smooth
 
 Settings = dict[str, dict[str, Any]]
@@ -319,8 +320,7 @@ class Best:
 
 
 def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.ndarray, float]:
-    from scipy.stats import qmc
-
+    qmc = needed('scipy.stats', 'fit').qmc
     low, high = problem.low, problem.high
     limits = problem.limits
     points = qmc.scale(qmc.Sobol(low.size, seed=seed).random(starts), low, high)
@@ -393,8 +393,7 @@ def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.nda
                    jacobian: Callable[[np.ndarray], np.ndarray], loss: str, most: int,
                    tolerance: float = 1e-4) -> tuple[np.ndarray, float]:
     """Levenberg and Marquardt's method within bounds (scipy's trust regions)."""
-    from scipy.optimize import least_squares
-
+    least_squares = needed('scipy.optimize', 'fit').least_squares
     inside = np.clip(start, problem.low + 1e-6, problem.high - 1e-6)
     found = least_squares(misfit, inside, jacobian, loss=loss, f_scale=5.0, bounds=(problem.low, problem.high),
                           max_nfev=most, xtol=tolerance, ftol=tolerance, gtol=1e-10, x_scale=0.1)
@@ -459,8 +458,7 @@ class Surface:
 
     def lowest(self, guess: np.ndarray, held: int) -> tuple[np.ndarray, float]:
         """The best candidate with one constant held at its value in the guess, and its squared misfit."""
-        from scipy.optimize import least_squares
-
+        least_squares = needed('scipy.optimize', 'fit').least_squares
         others = np.arange(guess.size) != held
 
         def whole(part: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ import pathlib
 from typing import TYPE_CHECKING, Any
 
 from . import _namelist, _program
+from ._optional import needed
 from ._run import InputError
 
 if TYPE_CHECKING:
@@ -31,8 +32,7 @@ def stability(input: str | pathlib.Path | dict[str, Any]) -> Stability:
     Raises InputError with every fault of the input. Where there is no steady sliding the row says so: `stability` is 'none', its
     numbers are NaN, and `reason` tells why.
     """
-    import pandas
-
+    pandas = needed('pandas', 'run')
     name = 'input'
     if not isinstance(input, dict) and not _namelist.is_text(input):
         name = str(input)

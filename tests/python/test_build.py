@@ -3,6 +3,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -18,6 +19,27 @@ class Build(unittest.TestCase):
     def test_wheels_are_small(self):
         for wheel in (ROOT / 'build/wheel').glob('*.whl'):
             self.assertLess(wheel.stat().st_size, 4e6)
+
+    def test_only_numpy_is_needed_and_what_else_is_told(self):
+        program = """import sys
+for name in ('pandas', 'scipy', 'matplotlib', 'f90nml'):
+    sys.modules[name] = None
+import stickslip
+law = stickslip.laws.Coulomb(alpha_n=1, alpha_t=1, mu=0.3)
+assert stickslip.update([-1.0, 0.0], 1.0, law).traction[0] == -1
+record = stickslip.Record(range(99), range(99))
+for call, words in ((lambda: stickslip.run({'friction': law}), "needs pandas: install the package as 'stickslip[run]'"),
+                    (lambda: stickslip.run('&friction /'), 'needs pandas'),
+                    (lambda: stickslip.fit(record, '&friction /', free=['mu']), 'needs f90nml')):
+    try:
+        call()
+    except ImportError as error:
+        assert words in str(error), error
+    else:
+        raise AssertionError(words)
+"""
+        result = subprocess.run([sys.executable, '-c', program], text=True, capture_output=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_a_missing_compiler_is_told_with_what_to_install(self):
         with tempfile.TemporaryDirectory() as folder:
