@@ -134,7 +134,7 @@ contains
     end function limit
 
     !> By how much does the force at a turn within a step exceed those at its ends? An excess larger
-    !> than the change in a step is not accepted: velocities at the ends of long steps are uncertain.
+    !> than the change in a step is refused: velocities at the ends of long steps are uncertain.
     pure function beyond(before, now, turn) result(excess)
         type(moment), intent(in) :: before, now, turn
         real(dp) :: excess   !! [F]
