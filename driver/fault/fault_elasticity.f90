@@ -17,7 +17,7 @@ module fault_elasticity
         integer :: rows = 0                  !! of this process
         integer, allocatable :: counts(:)    !! rows of each process
     contains
-        procedure :: divide, cells, row_sums
+        procedure :: divide, cells, row_sums, sum_of_rows
     end type slab
 
     type, abstract :: elasticity
@@ -97,7 +97,7 @@ contains
         type(team), intent(in) :: together
         real(dp), intent(in) :: values(self%nx, self%rows)
         real(dp) :: total
-        real(dp) :: own(self%rows), all_rows(self%nz)
+        real(dp) :: own(self%rows)
         integer :: i, k
 
         do k = 1, self%rows
@@ -106,11 +106,23 @@ contains
                 own(k) = own(k) + values(i, k)
             end do
         end do
+        total = self%sum_of_rows(together, own)
+    end function row_sums
+
+    !> The sum of a number of each row.
+    function sum_of_rows(self, together, own) result(total)
+        class(slab), intent(in) :: self
+        type(team), intent(in) :: together
+        real(dp), intent(in) :: own(:)   !! of this process's rows
+        real(dp) :: total
+        real(dp) :: all_rows(self%nz)
+        integer :: k
+
         call together%gather(own, self%counts, all_rows)
         total = 0.0_dp
         do k = 1, self%nz
             total = total + all_rows(k)
         end do
-    end function row_sums
+    end function sum_of_rows
 
 end module fault_elasticity

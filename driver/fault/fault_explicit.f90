@@ -7,6 +7,7 @@
 !> of the arithmetic or no slip rate is found, refuses the step.
 module fault_explicit
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use fault_energy, only : powers, row_powers
     use fault_problem, only : fault, fault_state
     use fault_start, only : start_rate_state
     use fault_stepper, only : stepper
@@ -52,7 +53,10 @@ module fault_explicit
         type(constant_set), allocatable :: sets(:)
         real(dp), allocatable :: slip_rate(:, :), memory_rate(:, :)   !! cell, stage
         real(dp), allocatable :: slip(:), deficit(:), memory(:)       !! of a stage
-        real(dp), allocatable :: traction(:)   !! of a stage, from the slip deficit alone
+        real(dp), allocatable :: traction(:)   !! of a stage, elastic
+        real(dp), allocatable :: power(:, :)         !! row, power: of the last stage
+        real(dp), allocatable :: first_power(:, :)   !! of the first stage
+        real(dp), allocatable :: work(:, :)          !! of the step
         integer :: first_stage = 1, last_stage = stages    !! places of the rates: they swap
     contains
         procedure :: start => start_explicit
@@ -116,6 +120,8 @@ contains
         call divide(self, here)
         allocate (self%slip_rate(here%n, stages), self%memory_rate(here%n, stages), &
             self%slip(here%n), self%deficit(here%n), self%memory(here%n), self%traction(here%n))
+        allocate (self%power(here%part%rows, powers), self%first_power(here%part%rows, powers), &
+            self%work(here%part%rows, powers))
         self%memory = state%memory
         self%deficit = state%slip - here%plan%plate_rate * state%time
         call here%surroundings%apply(together, self%deficit, self%traction)
@@ -126,6 +132,8 @@ contains
         sound = .not. together%any_of(.not. sound)
         if (.not. sound) return
         call settle(self, here, 1, state)
+        call row_powers(here%part%nx, here%part%rows, self%traction, self%slip_rate(:, 1), &
+            here%damping, self%first_power)
         if (state%dt > 0.0_dp) return
         state%dt = 1.0e-2_dp / together%largest(max(maxval(abs(state%rate) / here%slip_scale), &
             maxval(abs(self%memory_rate(:, 1))), tiny(1.0_dp)))
@@ -196,6 +204,8 @@ contains
         call swap_arrays(state%slip, self%slip)
         call swap_arrays(state%memory, self%memory)
         call settle(self, here, self%last_stage, state)
+        self%first_power = self%power
+        call here%add_powers(together, self%work, state%energy)
         swap = self%first_stage   ! the last stage of a step is the first of the next
         self%first_stage = self%last_stage
         self%last_stage = swap
@@ -218,7 +228,7 @@ contains
         type(fault_state), intent(inout) :: state
 
         state%rate = self%slip_rate(:, k)
-        state%traction = self%traction + here%prestress - here%damping * state%rate
+        state%traction = self%traction - here%damping * state%rate
     end subroutine settle
 
     !> All stages. A stage that is not sound counts as a huge error at the end: processes that are
@@ -238,6 +248,7 @@ contains
         do i = 1, size(self%blocks)
             call self%to_stage(here, self%blocks(i), 2, time, dt, state)
         end do
+        self%work = dt * weight(1, stages) * self%first_power
         do stage = 2, stages
             call here%surroundings%apply(together, self%deficit, self%traction)
             do i = 1, size(self%blocks)
@@ -248,6 +259,10 @@ contains
                     call self%error_of(here, self%blocks(i), dt, error)
                 end if
             end do
+            if (stage == 2) cycle   ! of no weight
+            call row_powers(here%part%nx, here%part%rows, self%traction, &
+                self%slip_rate(:, place(self, stage)), here%damping, self%power)
+            if (stage < stages) self%work = self%work + dt * weight(stage, stages) * self%power
         end do
         if (.not. sound) error = huge(error)
     end subroutine try_step
@@ -327,7 +342,8 @@ contains
         integer :: status(block%last - block%first + 1)
 
         associate (first => block%first, last => block%last)
-            load = self%traction(first:last) + here%prestress(first:last)
+            self%traction(first:last) = self%traction(first:last) + here%prestress(first:last)
+            load = self%traction(first:last)
             if (count(abs(self%memory(first:last)) < most_memory .and. abs(load) < huge(load)) &
                 < size(load)) sound = .false.
             if (sound) then

@@ -13,11 +13,12 @@
 !> The contact springs are no approximation: slip is told from elastic displacement.
 module fault_implicit
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use fault_energy, only : power_slip, powers, row_powers
     use fault_problem, only : fault, fault_state
     use fault_start, only : start_contacts
     use fault_stepper, only : stepper
-    use friction_mod, only : friction_facts, friction_update_batch, law_facts, statev_r, &
-        statev_size, statev_slip
+    use friction_mod, only : friction_facts, friction_update_batch, law_facts, &
+        statev_dissipation, statev_r, statev_size, statev_slip
     use minres, only : solve_minres
     use processes, only : team
     implicit none
@@ -54,7 +55,7 @@ module fault_implicit
         procedure :: columns
         procedure :: keep
         procedure :: take
-        procedure, private :: advance, see_instability, update
+        procedure, private :: add_energy, advance, see_instability, update
     end type implicit_steps
 
 contains
@@ -146,7 +147,7 @@ contains
         real(dp), parameter :: part = 0.01_dp   !! of the normal traction, in which tractions count
         real(dp), parameter :: safety = 0.8_dp, least = 0.2_dp, most = 2.0_dp
         type(contact) :: whole, half, two
-        real(dp) :: dt, error, factor
+        real(dp) :: dt, error, factor, half_rate(here%n)
 
         do
             dt = min(state%dt, here%plan%t_end - state%time)
@@ -156,6 +157,7 @@ contains
             call self%advance(here, together, self%now, state%time, dt, whole, sound)
             if (sound) call self%advance(here, together, self%now, state%time, 0.5_dp * dt, half, &
                 sound)
+            half_rate = self%rate
             if (sound) call self%advance(here, together, half, state%time + 0.5_dp * dt, &
                 0.5_dp * dt, two, sound)
             factor = least
@@ -171,6 +173,7 @@ contains
             if (error <= 1.0_dp) exit
             state%rejected = state%rejected + 1
         end do
+        call self%add_energy(here, together, dt, half, half_rate, two, state)
         self%now = two
         state%time = state%time + dt
         if (dt >= here%plan%t_end - (state%time - dt)) state%time = here%plan%t_end
@@ -180,6 +183,32 @@ contains
         state%traction = two%traction
         state%memory = two%statev(:, statev_r)
     end subroutine step
+
+    !> Work of a step, from its start and the ends of its halves: what friction dissipates is its
+    !> own account, the rest the trapezoidal rule's.
+    subroutine add_energy(self, here, together, dt, half, half_rate, two, state)
+        class(implicit_steps), intent(in) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        real(dp), intent(in) :: dt               !! of the step [T]
+        type(contact), intent(in) :: half, two   !! after a half, and after both
+        real(dp), intent(in) :: half_rate(:)     !! slip rate after a half [L/T]
+        type(fault_state), intent(inout) :: state   !! at the start of the step
+        real(dp), dimension(here%part%rows, powers) :: first, middle, last
+
+        call row_powers(here%part%nx, here%part%rows, state%traction + here%damping * state%rate, &
+            state%rate, here%damping, first)
+        call row_powers(here%part%nx, here%part%rows, half%traction + here%damping * half_rate, &
+            half_rate, here%damping, middle)
+        call row_powers(here%part%nx, here%part%rows, two%traction + here%damping * self%rate, &
+            self%rate, here%damping, last)
+        first = 0.25_dp * dt * (first + 2.0_dp * middle + last)
+        first(:, power_slip) = 0.0_dp
+        call here%add_powers(together, first, state%energy)
+        state%energy%dissipated = state%energy%dissipated + here%plan%cell_area() &
+            * here%part%row_sums(together, half%statev(:, statev_dissipation) &
+            + two%statev(:, statev_dissipation))
+    end subroutine add_energy
 
     !> From a contact to that a time `dt` later, by Newton's method on displacements.
     subroutine advance(self, here, together, from, time, dt, to, sound)
@@ -260,7 +289,8 @@ contains
         logical, intent(out) :: sound
 
         to%statev = from%statev
-        to%statev(:, statev_slip) = 0.0_dp   ! small increments of slip must not drown in its sum
+        to%statev(:, [statev_slip, statev_dissipation]) = 0.0_dp   ! small increments must not
+                                                                   ! drown in their sums
         self%motion(:, 2) = du
         call friction_update_batch(self%motion, dt, here%props, to%statev, self%answer, &
             self%tangent, self%status)

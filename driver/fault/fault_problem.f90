@@ -3,6 +3,7 @@ module fault_problem
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use antiplane_half_space, only : half_space
     use fault_elasticity, only : elasticity, slab
+    use fault_energy, only : energies, power_loading, power_radiated, power_slip
     use fault_settings, only : fault_plan
     use friction_mod, only : read_surface, sliding_surface
     use processes, only : team
@@ -24,7 +25,7 @@ module fault_problem
         real(dp), allocatable :: slip_scale(:)         !! over which friction evolves [L]
         real(dp) :: cohesive_length = huge(1.0_dp)     !! least of all cells [L]
     contains
-        procedure :: create, tractions, cell_of
+        procedure :: create, tractions, cell_of, add_powers, elastic_energy
     end type fault
 
     !> Where the fault is.
@@ -33,6 +34,7 @@ module fault_problem
         real(dp) :: dt = 0.0_dp                !! of the next step [T]
         real(dp) :: error = 1.0e-4_dp          !! of the last step, in parts of the tolerance
         integer(int64) :: steps = 0, rejected = 0
+        type(energies) :: energy               !! so far
         real(dp), allocatable :: slip(:)       !! [L]
         real(dp), allocatable :: rate(:)       !! of slip [L/T]
         real(dp), allocatable :: traction(:)   !! that friction carries [F/L^2]
@@ -107,6 +109,35 @@ contains
         call self%surroundings%apply(together, deficit, traction)
         traction = traction + self%prestress
     end subroutine tractions
+
+    !> Adds the powers of this process's rows, integrated over a step, to the energies.
+    subroutine add_powers(self, together, work, energy)
+        class(fault), intent(in) :: self
+        type(team), intent(in) :: together
+        real(dp), intent(in) :: work(:, :)   !! row, power
+        type(energies), intent(inout) :: energy
+
+        associate (area => self%plan%cell_area())
+            energy%loading = energy%loading + self%plan%plate_rate * area &
+                * self%part%sum_of_rows(together, work(:, power_loading))
+            energy%dissipated = energy%dissipated + area * self%part%sum_of_rows(together, &
+                work(:, power_slip))
+            energy%radiated = energy%radiated + area * self%part%sum_of_rows(together, &
+                work(:, power_radiated))
+        end associate
+    end subroutine add_powers
+
+    !> Elastic energy of a state, without that of the start.
+    function elastic_energy(self, together, state) result(energy)
+        class(fault), intent(in) :: self
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        real(dp) :: energy
+
+        energy = -0.5_dp * self%plan%cell_area() * self%part%row_sums(together, (state%slip &
+            - self%plan%plate_rate * state%time) * (state%traction + self%damping * state%rate &
+            + self%prestress))
+    end function elastic_energy
 
     !> Number of the cell around a point, among those of this process; 0: another process has it.
     pure function cell_of(self, x, z) result(cell)

@@ -59,7 +59,8 @@ contains
 
         if (.not. self%writes) return
         call self%global%create(self%base // '_global.csv')
-        call self%global%write_line('time,log10_slip_rate,moment_rate')
+        call self%global%write_line('time,log10_slip_rate,moment_rate,loading_work,' &
+            // 'elastic_energy,dissipated,radiated')
         call self%events%create(self%base // '_events.csv')
         call self%events%write_line(event_columns)
         do i = 1, size(self%stations)
@@ -149,11 +150,12 @@ contains
         type(team), intent(in) :: together
         type(fault_state), intent(in) :: state
         type(event_watch), intent(in) :: watch
-        real(dp) :: moment_rate, values(4, size(self%cells)), flat(4 * size(self%cells))
+        real(dp) :: moment_rate, elastic, values(4, size(self%cells)), flat(4 * size(self%cells))
         integer :: i
 
         moment_rate = here%plan%shear_modulus * here%plan%cell_area() &
             * here%part%row_sums(together, state%rate)
+        elastic = here%elastic_energy(together, state)
         values = -huge(1.0_dp)
         do i = 1, size(self%cells)
             if (self%cells(i) == 0) cycle
@@ -165,7 +167,8 @@ contains
         if (size(flat) > 0) call together%largest_of_each(flat)
         if (.not. self%writes) return
         call self%global%write_line(full_row([state%time, log10_of(watch%largest_rate), &
-            moment_rate]))
+            moment_rate, state%energy%loading, elastic, state%energy%dissipated, &
+            state%energy%radiated]))
         do i = 1, size(self%cells)
             call self%stations(i)%write_line(full_row([state%time, flat(4 * i - 3:4 * i)]))
         end do

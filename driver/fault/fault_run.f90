@@ -2,6 +2,7 @@
 module fault_run
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, int64
     use fault_checkpoint, only : read_checkpoint, write_checkpoint
+    use fault_energy, only : energies
     use fault_events, only : event_watch
     use fault_fields, only : field_file
     use fault_explicit, only : explicit_steps
@@ -19,7 +20,7 @@ module fault_run
     public :: run_fault
 
     integer, parameter :: steps_between_looks = 16   !! at the clock and at interrupts
-    integer, parameter :: own_numbers = 16           !! of a checkpoint's header
+    integer, parameter :: own_numbers = 17           !! of a checkpoint's header
 
     !> All that a run is made of.
     type :: live_run
@@ -84,9 +85,11 @@ contains
             // '_fields.bin (disk full?)'
         if (plan%fields > 0) call live%fields%describe(live%here, together)
         most_slip = together%largest(maxval(live%state%slip))
+        live%state%energy%elastic = live%here%elastic_energy(together, live%state)
         if (together%rank == 0 .and. len(problem) == 0) then
             call remove_file(base // '.checkpoint')
             if (.not. quiet) call print_summary(live, most_slip, seconds() - begun)
+            call warn_of_energy(live%state%energy)
         end if
         call live%here%surroundings%free()
     end subroutine run_fault
@@ -161,6 +164,7 @@ contains
         associate (state => live%state, watch => live%watch, event => live%watch%event)
             header = 0.0_dp
             header(14) = live%fields%records
+            header(15:17) = [state%energy%loading, state%energy%dissipated, state%energy%radiated]
             header(:13) = [state%time, state%dt, real(state%steps, dp), real(state%rejected, dp), &
                 merge(1.0_dp, 0.0_dp, watch%on), real(watch%events, dp), watch%largest_rate, &
                 event%onset, event%peak_rate, real(event%first_cell, dp), &
@@ -203,6 +207,7 @@ contains
             event%first_cell = int(header(10), int64)
             live%records%next_contour = header(11)
             state%error = header(12)
+            state%energy = energies(loading=header(15), dissipated=header(16), radiated=header(17))
             n = live%steps%columns()
             call live%steps%take(state, columns(:, :n), header(13))
             watch%slip_before = columns(:, n + 1)
@@ -229,6 +234,15 @@ contains
             // 'of ', text_of(here%cohesive_length), ': it takes ', least_cells, ' or more of them'
     end subroutine warn
 
+    subroutine warn_of_energy(energy)
+        type(energies), intent(in) :: energy
+        real(dp), parameter :: allowed = 0.02_dp
+
+        if (energy%unbalanced() > allowed) write (error_unit, '(a, f0.1, a)') &
+            'stickslip: warning: the balance of energy is open by ', 100.0_dp &
+            * energy%unbalanced(), ' %: the steps are too long, rtol too large'
+    end subroutine warn_of_energy
+
     subroutine print_summary(live, most_slip, elapsed)
         type(live_run), intent(in) :: live
         real(dp), intent(in) :: most_slip
@@ -238,6 +252,13 @@ contains
             live%state%rejected, ' rejected)'
         write (report, '(a, i0)') 'events         ', live%watch%events
         write (report, '(2a)') 'largest slip   ', text_of(most_slip)
+        associate (energy => live%state%energy)
+            write (report, '(8a, es8.1)') 'energy         loading ', text_of(energy%loading), &
+                ' = elastic ', text_of(energy%elastic), ' + dissipated ', &
+                text_of(energy%dissipated), ' + radiated ', text_of(energy%radiated)
+            write (report, '(a, es7.1, a)') '               open by ', energy%unbalanced(), &
+                ' of the largest'
+        end associate
         write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
         write (report, '(3a)') 'results        ', live%base, &
             '_events.csv, _global.csv and others'
