@@ -35,6 +35,7 @@ module fault_explicit
         -71.0_dp / 16695.0_dp, 71.0_dp / 1920.0_dp, -17253.0_dp / 339200.0_dp, 22.0_dp / 525.0_dp, &
         -1.0_dp / 40.0_dp]
     integer, parameter :: block_size = 512   !! cells whose rates stay in cache
+    integer, parameter :: widest = 8         !! numbers of a vector instruction
 
     !> Cells that are treated one after the other, all of an evaluation at once.
     type :: cell_block
@@ -338,8 +339,9 @@ contains
         integer, intent(in) :: k           !! place of the rates
         logical, intent(inout) :: sound
         real(dp), parameter :: most_memory = 400.0_dp   !! e^that is no time of this world
-        real(dp), dimension(block%last - block%first + 1) :: load, theta, theta_rate
-        integer :: status(block%last - block%first + 1)
+        real(dp), dimension(block%last - block%first + 1) :: load, theta_rate
+        real(dp) :: theta(block_size)
+        integer :: status(block%last - block%first + 1), n, filled
 
         associate (first => block%first, last => block%last)
             self%traction(first:last) = self%traction(first:last) + here%prestress(first:last)
@@ -347,15 +349,20 @@ contains
             if (count(abs(self%memory(first:last)) < most_memory .and. abs(load) < huge(load)) &
                 < size(load)) sound = .false.
             if (sound) then
-                theta = exp(self%memory(first:last))
+                ! whole vectors: what is left over would go to a function that rounds otherwise
+                n = last - first + 1
+                filled = n + modulo(-n, widest)
+                theta(n + 1:filled) = 0.0_dp
+                theta(:n) = self%memory(first:last)
+                theta(:filled) = exp(theta(:filled))
                 call friction_slip_rates(abs(load), here%pressure(first:last), here%damping, &
-                    self%sets(block%set)%props, theta, self%slip_rate(first:last, k), &
+                    self%sets(block%set)%props, theta(:n), self%slip_rate(first:last, k), &
                     theta_rate, status)
                 if (minval(status) < 0) sound = .false.
             end if
             if (sound) then
                 self%slip_rate(first:last, k) = sign(self%slip_rate(first:last, k), load)
-                self%memory_rate(first:last, k) = theta_rate / theta
+                self%memory_rate(first:last, k) = theta_rate / theta(:n)
             else
                 self%slip_rate(first:last, k) = 0.0_dp
                 self%memory_rate(first:last, k) = 0.0_dp

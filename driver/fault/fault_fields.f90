@@ -105,6 +105,10 @@ contains
         call together%wait()
         inquire (file=self%base // '_fields.bin', size=bytes)
         self%failed = together%any_of(status /= 0 .or. bytes /= self%records * record_bytes(here))
+        if (.not. self%failed) return
+        self%records = self%records - 1   ! nothing is left of a record that is not whole
+        if (together%rank == 0) status = merge(0, 1, truncate_file(self%base // '_fields.bin', &
+            self%records * record_bytes(here)))
     end subroutine write_record
 
     !> The description for ParaView, of all records so far.
@@ -119,7 +123,7 @@ contains
         character(len=24) :: number, time_text
         integer :: i, k, unit, status
 
-        if (together%rank /= 0 .or. self%failed) return
+        if (together%rank /= 0) return
         open (newunit=unit, file=self%base // '_fields.bin', access='stream', form='unformatted', &
             status='old', action='read', iostat=status)
         if (status /= 0) return

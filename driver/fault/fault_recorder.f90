@@ -200,7 +200,8 @@ contains
         type(fault_state), intent(in) :: state
         type(event_watch), intent(in) :: watch
         logical, intent(in) :: ended
-        real(dp) :: dt, u, own(here%n), slip(here%plan%nz), rate(here%plan%nz)
+        real(dp) :: dt, u, own(here%n)
+        real(dp), dimension(here%plan%nz) :: slip, rate, rate_before
         integer :: stride, k
 
         dt = state%time - self%time_before
@@ -213,8 +214,9 @@ contains
                 - self%slip_before) + dt * u * (1.0_dp - u) * ((1.0_dp - u) * self%rate_before &
                 - u * state%rate)
             call together%gather(own, here%part%counts, slip)
-            own = (1.0_dp - u) * log10_of(self%rate_before) + u * log10_of(state%rate)
-            call together%gather(own, here%part%counts, rate)
+            call together%gather(self%rate_before, here%part%counts, rate_before)
+            call together%gather(state%rate, here%part%counts, rate)
+            rate = (1.0_dp - u) * log10_of(rate_before) + u * log10_of(rate)
             do k = 1, here%plan%nz, stride
                 if (self%writes) call self%contours%write_line(full_row([self%next_contour, &
                     merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k), rate(k)]))

@@ -19,7 +19,7 @@ module fault_run
 
     public :: run_fault
 
-    integer, parameter :: steps_between_looks = 16   !! at the clock and at interrupts
+    integer, parameter :: steps_between_looks = 16   !! at the clock
     integer, parameter :: own_numbers = 17           !! of a checkpoint's header
 
     !> All that a run is made of.
@@ -105,7 +105,8 @@ contains
         logical :: sound, ended
 
         associate (plan => live%here%plan, state => live%state, records => live%records)
-            call bar%begin(together%rank == 0 .and. .not. quiet, state%time / plan%t_end)
+            call bar%begin(together%rank == 0 .and. .not. quiet, state%time / plan%t_end, &
+                by_lines=together%members > 1)
             last = seconds()
             do while (state%time < plan%t_end .and. len(problem) == 0)
                 records%time_before = state%time
@@ -123,8 +124,7 @@ contains
                         live%fields%write_record(live%here, together, state)
                 end if
                 call bar%show(state%time / plan%t_end)
-                if (mod(state%steps, int(steps_between_looks, int64)) == 0) call look(live, &
-                    together, last, problem)
+                call look(live, together, last, problem)
             end do
             call bar%clear()
         end associate
@@ -139,8 +139,11 @@ contains
         logical :: stop_now
 
         stop_now = together%any_of(interrupted())
-        if (.not. stop_now .and. .not. together%any_of(together%rank == 0 &
-            .and. seconds() - last >= live%here%plan%checkpoint)) return
+        if (.not. stop_now) then
+            if (mod(live%state%steps, int(steps_between_looks, int64)) /= 0) return
+            if (.not. together%any_of(together%rank == 0 .and. seconds() - last &
+                >= live%here%plan%checkpoint)) return
+        end if
         last = seconds()
         call leave_checkpoint(live, together, problem)
         if (stop_now .and. len(problem) == 0) problem = &

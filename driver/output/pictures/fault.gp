@@ -4,6 +4,7 @@ set datafile separator ","
 if (!exists("ending")) { ending = "png" }
 panels = strlen(contours[1:1]) > 0 && contours[1:1] ne " " ? 3 : 1
 if (panels > 1) { stats contours using (column(-1)) skip 1 nooutput }
+if (panels > 1 && !exists("STATS_max")) { panels = 1 }   # no contour yet
 set terminal pngcairo size 1200,400*panels font "Sans,12"
 if (ending eq "svg") { set terminal svg size 1200,400*panels font "Sans,12" background "white" }
 set output stem.".".ending
