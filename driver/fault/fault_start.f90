@@ -28,9 +28,11 @@ contains
             state%traction(here%n))
         state%slip = 0.0_dp
         state%rate = here%plan%plate_rate
+        here%prestress = 0.0_dp
         if (here%plan%steady) then
             least = huge(least)
             do cell = 1, here%n
+                if (is_like_the_last(here, state%rate, cell)) cycle
                 call read_surface(here%props(cell, :), surface, status)
                 least = min(least, steady_traction(surface, here%pressure(cell), &
                     here%plan%plate_rate))
@@ -48,11 +50,29 @@ contains
             end do
         end if
         do cell = 1, here%n
+            if (is_like_the_last(here, state%rate, cell)) then
+                state%memory(cell) = state%memory(cell - 1)
+                cycle
+            end if
             call read_surface(here%props(cell, :), surface, status)
             state%memory(cell) = state_of(surface, here%prestress(cell) &
                 - here%damping * state%rate(cell), here%pressure(cell), state%rate(cell))
         end do
     end subroutine start_rate_state
+
+    !> Whether a cell starts as the one before it does: its state is then known.
+    pure function is_like_the_last(here, rate, cell) result(yes)
+        type(fault), intent(in) :: here
+        real(dp), intent(in) :: rate(:)
+        integer, intent(in) :: cell
+        logical :: yes
+
+        yes = cell > 1
+        if (yes) yes = all(abs(here%props(cell, :) - here%props(cell - 1, :)) <= 0.0_dp)
+        if (yes) yes = max(abs(here%pressure(cell) - here%pressure(cell - 1)), &
+            abs(here%prestress(cell) - here%prestress(cell - 1)), abs(rate(cell) &
+            - rate(cell - 1))) <= 0.0_dp
+    end function is_like_the_last
 
     !> The contacts of all cells, for implicit steps, whatever the law: under rate-and-state
     !> friction as above; else under the traction of the plan, with the memory of a virgin surface,
@@ -186,10 +206,11 @@ contains
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, rate
         real(dp) :: ln_theta
+        real(dp), parameter :: rough = 1.0e-2_dp
         real(dp) :: before, ln_v, ln_v_before
         integer :: iteration
 
-        before = ln_steady_state(surface, traction, pressure, rate)
+        before = ln_steady_state(surface, traction, pressure, rate, rough)
         ln_v_before = ln_rate(surface, traction, pressure, before)
         ln_theta = before + 1.0_dp
         do iteration = 1, 20
@@ -213,18 +234,19 @@ contains
     end function state_of
 
     !> Where the state does not change any more at a slip rate.
-    function ln_steady_state(surface, traction, pressure, rate) result(ln_theta)
+    function ln_steady_state(surface, traction, pressure, rate, tolerance) result(ln_theta)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, rate
+        real(dp), intent(in) :: tolerance   !! of ln(theta)
         real(dp) :: ln_theta
         type(law_state) :: change
         real(dp) :: low, high
-        integer :: halving
 
         low = -300.0_dp
         high = 300.0_dp
-        do halving = 1, 100
+        do
             ln_theta = 0.5_dp * (low + high)
+            if (high - low <= tolerance .or. ln_theta <= low .or. ln_theta >= high) exit
             change = surface%law%state_rates(law_state(mu=0.0_dp, r=exp(ln_theta)), &
                 load_of(traction, pressure), rate)
             if (change%r > 0.0_dp) then
@@ -243,7 +265,7 @@ contains
         real(dp) :: low, high, ln_theta
         integer :: halving
 
-        ln_theta = ln_steady_state(surface, 0.0_dp, pressure, rate)
+        ln_theta = ln_steady_state(surface, 0.0_dp, pressure, rate, 0.0_dp)
         low = 0.0_dp
         high = pressure
         do while (ln_rate(surface, high, pressure, ln_theta) < log(rate))
