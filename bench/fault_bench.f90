@@ -37,7 +37,8 @@ program fault_bench
     plan%t_end = huge(1.0_dp)
     if (together%rank == 0) then
         print '(a, i0)', 'ns a cell and evaluation; processes: ', together%members
-        print '(a)', '  nx x nz           step  elasticity    transform        copy   step/transform'
+        print '(2a)', '  nx x nz           step  elasticity    transform        copy   ', &
+            'step/transform'
     end if
     if (command_argument_count() < 2) call measure(plan%nx, plan%nz)
     do i = 2, command_argument_count() - 1, 2

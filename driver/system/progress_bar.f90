@@ -21,8 +21,8 @@ module progress_bar
 
 contains
 
-    !> Only on a terminal, and only if wanted, will anything be shown. Where a launcher stands between
-    !> (mpirun), which hides the terminal, a line now and then may be shown anyway.
+    !> Only on a terminal, and only if wanted, will anything be shown. Where a launcher stands
+    !> between (mpirun), which hides the terminal, a line now and then may be shown anyway.
     subroutine begin(self, wanted, part, by_lines)
         class(progress), intent(out) :: self
         logical, intent(in) :: wanted
