@@ -31,6 +31,7 @@ module fault_explicit
         -5103.0_dp / 18656.0_dp, 0.0_dp, &
         35.0_dp / 384.0_dp, 0.0_dp, 500.0_dp / 1113.0_dp, 125.0_dp / 192.0_dp, &
         -2187.0_dp / 6784.0_dp, 11.0_dp / 84.0_dp], [stages - 1, stages - 1])
+    real(dp), parameter :: step_weight(stages) = [weight(:, stages), 0.0_dp]
     real(dp), parameter :: error_weight(stages) = [71.0_dp / 57600.0_dp, 0.0_dp, &
         -71.0_dp / 16695.0_dp, 71.0_dp / 1920.0_dp, -17253.0_dp / 339200.0_dp, 22.0_dp / 525.0_dp, &
         -1.0_dp / 40.0_dp]
@@ -241,6 +242,7 @@ contains
         real(dp), intent(in) :: time, dt
         type(fault_state), intent(in) :: state
         real(dp), intent(out) :: error
+        real(dp), parameter :: refused = 1.0e30_dp
         logical :: sound
         integer :: stage, i
 
@@ -249,7 +251,7 @@ contains
         do i = 1, size(self%blocks)
             call self%to_stage(here, self%blocks(i), 2, time, dt, state)
         end do
-        self%work = dt * weight(1, stages) * self%first_power
+        self%work = dt * step_weight(1) * self%first_power
         do stage = 2, stages
             call here%surroundings%apply(together, self%deficit, self%traction)
             do i = 1, size(self%blocks)
@@ -263,9 +265,9 @@ contains
             if (stage == 2) cycle   ! of no weight
             call row_powers(here%part%nx, here%part%rows, self%traction, &
                 self%slip_rate(:, place(self, stage)), here%damping, self%power)
-            if (stage < stages) self%work = self%work + dt * weight(stage, stages) * self%power
+            self%work = self%work + dt * step_weight(stage) * self%power
         end do
-        if (.not. sound) error = huge(error)
+        if (.not. sound) error = refused
     end subroutine try_step
 
     !> Where the rates of a stage are.
