@@ -133,12 +133,12 @@ class AtPoints(unittest.TestCase):
     """Constants of their own at each point: the same as one point after the other."""
 
     def laws_of(self, n):
+        """Every law, with constants that vary; of some also what their own defaults follow from."""
         draw = np.random.default_rng(5)
-        return [(LAWS['subloading'], {'mu_s': draw.uniform(0.4, 0.6, n), 'kappa': draw.uniform(1, 9, n)}),
-                (LAWS['coulomb'], {'mu': draw.uniform(0.1, 0.6, n), 'alpha_t': draw.uniform(500, 900, n)}),
-                (LAWS['static_kinetic'], {'d_c': draw.uniform(1, 4, n)}),
-                (LAWS['rate_and_state'], {'d_c': draw.uniform(0.01, 0.1, n), 'a': draw.uniform(0.01, 0.02, n)}),
-                (LAWS['slip_weakening'], {'mu_s': draw.uniform(0.4, 0.6, n)})]
+        vary = {'subloading': {'mu_s': (0.4, 0.6), 'kappa': (1, 9)}, 'coulomb': {'mu': (0.1, 0.6)}, 'static_kinetic': {'d_c': (1, 4)},
+                'rate_and_state': {'d_c': (0.01, 0.1), 'a': (0.01, 0.02)}, 'slip_weakening': {'mu_s': (0.4, 0.6)}}
+        return [(law, {key: draw.uniform(*limits, n) for key, limits in {'alpha_t': (500, 900), **vary.get(name, {})}.items()})
+                for name, law in LAWS.items()]
 
     def test_each_point_is_as_if_it_were_alone(self):
         n = 150
