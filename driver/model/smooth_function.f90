@@ -44,6 +44,7 @@ contains
         error = huge(error)
         slope = 0.0_dp
         do i = 1, rows
+            if (.not. abs((x + h) - x) > 0.0_dp) return   ! no shorter step changes x
             if (one_sided) then
                 table(:, 1, i) = (f%at(x + h) - f%at(x)) / ((x + h) - x)
             else

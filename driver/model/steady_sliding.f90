@@ -408,9 +408,7 @@ contains
                 upper => coefficients(2))
                 if (traits%memory == 1 .and. i == 1) then
                     law%variable = on_mu
-                    step = long * (upper - law%state%mu)
-                    if (law%state%mu - lower > upper - law%state%mu) step = -long &
-                        * (law%state%mu - lower)
+                    step = long * roomy(law%state%mu, lower, upper)
                     if (.not. abs(step) > 0.0_dp) step = long   ! friction does not depend on it
                     slope = derivative(law, law%state%mu, step, .true.)
                 else if (traits%memory == 1) then
@@ -421,14 +419,23 @@ contains
                     slope = derivative(law, log(law%state%r), long, .false.)
                 else
                     law%variable = on_memory
-                    slope = derivative(law, law%state%r, long * min(law%state%r, &
-                        traits%kink - law%state%r), .false.)
+                    slope = derivative(law, law%state%r, long * roomy(law%state%r, 0.0_dp, &
+                        traits%kink), .true.)
                 end if
             end associate
             contact%by_memory(i) = slope(1)
             contact%rate_by_memory(:, i) = slope(2:)
         end do
     end subroutine differentiate
+
+    !> The way to the farther of two bounds, on whose other sides a law is another one.
+    pure function roomy(x, lower, upper) result(way)
+        real(dp), intent(in) :: x, lower, upper
+        real(dp) :: way
+
+        way = upper - x
+        if (x - lower > way) way = lower - x
+    end function roomy
 
     !> Traction, and rates of the first and second of what is remembered.
     function resistance_and_rates(self, x) result(y)
