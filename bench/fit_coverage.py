@@ -1,7 +1,7 @@
 """How good `stickslip.fit` is: seeded fits of six constants to two synthetic records each, from bounds of a factor 5.
 
-Usage, after ./dev test: build/python/bin/python bench/fit_coverage.py [FITS [FIRST_SEED]]. Seven to thirteen seconds
-of processor time a fit. Says for each fit the errors, the standard deviations, and whether it is right: every constant in its
+Usage, after ./dev test: build/python/bin/python bench/fit_coverage.py [FITS [FIRST_SEED]]. Six to seventeen seconds of
+processor time a fit. Says for each fit the errors, the standard deviations, and whether it is right: every constant in its
 95 % interval widened by 1.3, and within 5 % (xi 10 %) where its standard deviation is below 2 %; what is above 20 % is
 named undetermined.
 """

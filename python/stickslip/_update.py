@@ -66,8 +66,6 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
     if type(du) is not _ndarray or du.dtype is not _FLOAT:
         du = np.asarray(du, _FLOAT)
     if (places := _PLACES.get(du.shape)) is not None:
-        if type(law) is AtPoints:
-            raise ValueError(f'the law has constants of {len(law)} points: du needs the shape ({len(law)}, ndir)')
         # One point. Every line counts here: a call takes less than two microseconds, a third of them in the library.
         ndir, free = places
         try:

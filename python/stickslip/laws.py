@@ -116,6 +116,11 @@ class AtPoints:
     def __len__(self) -> int:
         return self.props.shape[1]
 
+    @property
+    def _size(self) -> int:
+        """What `update` of one point asks for first."""
+        raise ValueError(f'the law has constants of {len(self)} points: du needs the shape ({len(self)}, ndir)')
+
     def __repr__(self) -> str:
         return f'{self.law!r} at {len(self)} points'
 
