@@ -300,7 +300,11 @@ contains
                 if (taken) then
                     call synchronise(self, state)
                 else
-                    call relieve(self, state%time, pressure)
+                    ! a creeping contact that is relieved may slip far in a time that is lost in
+                    ! round-off
+                    if (eq%surface%traits%stiff) call slip_at_once(self, pressure, &
+                        abs(self%y(elastic)), 0.0_dp, 16.0_dp * shortest * max(state%time, &
+                        self%dt_min), 1.0e-3_dp)
                 end if
                 if (eq%surface%traits%onset /= onset_gradual) eq%phase = phase_stick
                 if (eq%phase == phase_capped) eq%phase = phase_slide
@@ -316,32 +320,37 @@ contains
         end associate
     end subroutine take_pressure
 
-    !> A creeping contact that is relieved may slip at once: as far as the friction routine lets it
-    !> in a time that is lost in round-off, should that be far.
-    subroutine relieve(self, t, pressure)
+    !> Slip at once, as far as the friction routine lets the contact slip in a time, if that is far.
+    subroutine slip_at_once(self, pressure, before, push, dt, far)
         class(continuous), intent(inout) :: self
-        real(dp), intent(in) :: t, pressure   !! [T], [F/L^2]
-        real(dp), parameter :: far = 1.0e-3_dp   !! part of the elastic displacement
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp), intent(in) :: before     !! elastic displacement, in the sense of the slip [L]
+        real(dp), intent(in) :: push       !! displacement that goes with it, part of `before`
+        real(dp), intent(in) :: dt         !! [T]
+        real(dp), intent(in) :: far        !! part of `before`
         real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
         integer :: status
+        logical :: logarithmic
 
         associate (eq => self%equations, y => self%y)
-            if (.not. eq%surface%traits%stiff) return
+            logarithmic = eq%surface%traits%logarithmic
             statev = 0.0_dp
             statev(statev_status) = 1.0_dp
             statev(statev_u_n) = -pressure / self%system%props(prop_alpha_n)
-            statev(statev_u_et) = abs(y(elastic))
-            statev(statev_r) = exp(y(memory))
-            call friction_update([0.0_dp, 0.0_dp], 16.0_dp * shortest * max(t, self%dt_min), &
-                self%system%props, statev, traction, tangent, status)
-            if (status < 0 .or. statev(statev_slip) < far * abs(y(elastic))) return
+            statev(statev_u_et) = before
+            statev(statev_r) = y(memory)
+            if (logarithmic) statev(statev_r) = exp(y(memory))
+            call friction_update([0.0_dp, push * before], dt, self%system%props, statev, traction, &
+                tangent, status)
+            if (status < 0 .or. statev(statev_slip) < far * before) return
             y(slip) = y(slip) + statev(statev_slip)
-            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (y(elastic)**2 &
+            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
                 - statev(statev_u_et)**2)
             y(elastic) = sign(statev(statev_u_et), y(elastic))
-            y(memory) = log(statev(statev_r))
+            y(memory) = statev(statev_r)
+            if (logarithmic) y(memory) = log(statev(statev_r))
         end associate
-    end subroutine relieve
+    end subroutine slip_at_once
 
     !> Rates at the start of a step, in the phase that holds there.
     subroutine settle(self, t)
@@ -623,8 +632,7 @@ contains
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp), intent(in) :: strength   !! [F/L^2]
-        real(dp) :: before, after, by_rate, statev(statev_size), traction(2), tangent(2, 2)
-        integer :: status
+        real(dp) :: before, after, by_rate
 
         associate (eq => self%equations)
             before = abs(self%y(elastic))
@@ -639,19 +647,7 @@ contains
                 self%y(dissipated) = self%y(dissipated) + max(0.0_dp, 0.5_dp * eq%alpha &
                     * (before**2 - after**2))
             else if (eq%surface%traits%memory == 2) then
-                statev = 0.0_dp
-                statev(statev_status) = 1.0_dp
-                statev(statev_u_n) = -pressure / self%system%props(prop_alpha_n)
-                statev(statev_u_et) = before
-                statev(statev_r) = self%y(memory)
-                call friction_update([0.0_dp, 1.0e-12_dp * before], 0.0_dp, self%system%props, &
-                    statev, traction, tangent, status)
-                if (status < 0 .or. statev(statev_slip) < 1.0e-6_dp * before) return
-                self%y(elastic) = eq%sense * statev(statev_u_et)
-                self%y(memory) = statev(statev_r)
-                self%y(slip) = self%y(slip) + statev(statev_slip)
-                self%y(dissipated) = self%y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
-                    - statev(statev_u_et)**2)
+                call slip_at_once(self, pressure, before, 1.0e-12_dp, 0.0_dp, 1.0e-6_dp)
             end if
         end associate
     end subroutine jump
