@@ -14,8 +14,8 @@ import numpy as np
 from . import _namelist
 from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians
 from ._records import LEAST_EVENTS, Analysis, Record, analyse
-from ._run import spring_force
-from ._search import Constant, Journal, Limits, Problem, Simulate, along_valley, replicas, search, set_times
+from ._run import check_runs, spring_force
+from ._search import Constant, Journal, Limits, NoStickSlip, Problem, Simulate, along_valley, replicas, search, set_times
 
 NORMAL = 1.959964       # standard deviations of a 95 % interval
 UNDETERMINED = 0.2      # standard deviation of a constant's logarithm from which on the records do not determine it
@@ -132,6 +132,11 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     records = [records] if isinstance(records, Record) else list(records)
     if not records:
         raise ValueError('fit: no records')
+    if not all(isinstance(record, Record) for record in records):
+        raise TypeError('fit: records: objects of stickslip.Record are needed')
+    free = [free] if isinstance(free, str) else list(free)
+    if len(set(free)) < len(free):
+        raise ValueError(f'fit: free = {free}: a name stands there twice')
     base = _namelist.groups_of(input)
     constants = [_constant(name, base, bounds) for name in free]
     if not constants:
@@ -156,8 +161,24 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
             candidate, stopped = search(problem, seed, starts)
             problem.limits.most = problem.limits.seconds = None   # the rest is short, and nothing without it
             return _assess(problem, candidate, stopped)
+        except NoStickSlip:
+            raise _no_stick_slip(problem) from None
         finally:
             journal.close()
+
+
+def _no_stick_slip(problem: Problem) -> ValueError:
+    """Why no candidate is like the records: the input may be wrong, and the program then knows how."""
+    middle = 0.5 * (problem.low + problem.high)
+    for target in problem.targets:
+        settings = problem.settings(middle, target)
+        set_times(settings, float(target.analysis.time[-1]), target.analysis.step)
+        try:
+            check_runs(settings)
+        except ValueError as error:
+            return type(error)(f'fit: in the middle of the bounds: {error}')
+    return ValueError('fit: no candidate within the bounds shows as many slip events as the records: widen the bounds, or '
+                      'question the model')
 
 
 _SIMULATE: Simulate = spring_force

@@ -89,6 +89,15 @@ def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
     return result
 
 
+def check_runs(settings: dict[str, dict[str, Any]]) -> None:
+    """Raises InputError with the faults of groups of keys, or ValueError where their run fails."""
+    output = _program.simulate(_namelist.written(settings))
+    if output.status == _program.BAD_INPUT:
+        raise InputError(output.reports['faults'].rstrip())
+    if output.status == _program.FAILED:
+        raise ValueError(f'the run fails {output.reports["failure"]}')
+
+
 def spring_force(settings: dict[str, dict[str, Any]]) -> tuple[np.ndarray, np.ndarray] | None:
     """Time and spring force of a run on groups of keys; None where it fails, or where its constants are not valid
     together, as candidates of a search may be."""

@@ -32,6 +32,10 @@ class Stopped(Exception):
     """A limit that the caller set has been reached."""
 
 
+class NoStickSlip(Exception):
+    """No candidate shows as many events as a record."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Constant:
     """A constant to be found."""
@@ -335,6 +339,8 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
                                      problem.coarse_jacobian, 'soft_l1', 10))
         limits.tell(f'coarse {k + 1} of 4: misfit {coarse[-1][1]:.3g}')
     coarse.sort(key=lambda found: found[1])
+    if all(np.isnan(values).all() for values in problem.evaluate('full', [candidate for candidate, _ in coarse])):
+        raise NoStickSlip
     for k, (candidate, _) in enumerate(coarse):
         if _fine(problem, candidate, best, f'fine {k + 1} of at most {len(coarse)}'):
             break

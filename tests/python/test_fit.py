@@ -115,6 +115,19 @@ class Fit(unittest.TestCase):
             self.assertIn('recordings: unknown key', result.stderr)
             self.assertIn('records is missing', result.stderr)
 
+    def test_an_input_that_cannot_run_is_told_in_the_program_s_words(self):
+        slider = {**INPUT['slider'], 'colour': 3}
+        for changes, free, bounds, words in (
+                ({}, ['nonsense'], (1, 2), 'nonsense.*unknown'), ({'slider': slider}, ['mu_s'], (0.3, 0.5), 'colour.*unknown'),
+                ({}, 'mu_s', (0.01, 0.02), 'mu_k'), ({}, ['mu_s'], (0.25001, 0.2502), 'no candidate within the bounds')):
+            with self.assertRaisesRegex(ValueError, f'fit: (?s:.*){words}'):
+                name = free if isinstance(free, str) else free[0]
+                stickslip.fit(self.record, {**INPUT, **changes}, free=free, bounds={name: bounds}, starts=4)
+        with self.assertRaisesRegex(ValueError, 'twice'):
+            stickslip.fit(self.record, INPUT, free=['mu_s', 'mu_s'])
+        with self.assertRaisesRegex(TypeError, 'stickslip.Record'):
+            stickslip.fit((self.time, self.force), INPUT, free=['mu_s'])
+
     def test_bounds_and_names_are_checked(self):
         for free, bounds, words in ((['mu_s'], {'mu_s': (0.5, 0.4)}, '0 < lower < upper'), (['mu_s'], {}, 'no bounds for mu_s'),
                                     (['mu_0'], 5.0, 'give bounds by name'), ([], 5.0, 'no free'), (['mu_s'], 0.5, 'above 1')):
