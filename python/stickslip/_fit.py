@@ -135,6 +135,8 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     if not all(isinstance(record, Record) for record in records):
         raise TypeError('fit: records: objects of stickslip.Record are needed')
     free = [free] if isinstance(free, str) else list(free)
+    if not all(isinstance(name, str) for name in free):
+        raise TypeError(f'fit: free = {free}: names are needed')
     if len(set(free)) < len(free):
         raise ValueError(f'fit: free = {free}: a name stands there twice')
     base = _namelist.groups_of(input)

@@ -41,7 +41,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         found = fit(records, groups, free=_list(told['free']), bounds=_bounds(told), checkpoint=checkpoint,
                     **{key: told[key] for key in ('seed', 'starts', 'jobs', 'most_evaluations', 'most_seconds')})
-    except (ValueError, RuntimeError) as error:
+    except (ValueError, TypeError, RuntimeError) as error:
         print(f'stickslip-fit: {given.input}: {error}', file=sys.stderr)
         return 1
     except KeyboardInterrupt:

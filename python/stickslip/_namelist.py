@@ -33,7 +33,12 @@ def groups_of(source: str | pathlib.Path | dict) -> Settings:
                 raise TypeError(f'group {group}: a dict of keys is needed, not {keys!r}')
             groups[group.lower()] = {key.lower(): value for key, value in keys.items()}
         return groups
-    parsed = needed('f90nml', 'run').reads(text_of(source)).todict()
+    f90nml, text = needed('f90nml', 'run'), text_of(source)
+    try:
+        parsed = f90nml.reads(text).todict()
+    except Exception as error:   # its parser asserts, and runs off the end of texts
+        raise ValueError(f'this is no namelist that can be read ({type(error).__name__}: {error}); is a quote or a slash '
+                         'missing?') from error
     return {group: dict(keys) for group, keys in parsed.items() if isinstance(keys, dict)}
 
 

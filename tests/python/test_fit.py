@@ -108,6 +108,13 @@ class Fit(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertIn('mu_k', result.stdout)
             self.assertEqual(sorted(path.name for path in (folder / 'rig_fit').iterdir()), ['rig.nml', 'rig.png', 'rig.txt'])
+            for broken, words in ((text[:text.index("rig.csv") + 3], 'no namelist that can be read'), ('hello', '&fit is missing'),
+                                  (text.replace("'rig.csv'", "'none.csv'"), 'none.csv')):
+                (folder / 'broken.nml').write_text(broken)
+                result = subprocess.run([sys.executable, '-m', 'stickslip._fit_command', 'broken.nml'], cwd=folder, text=True,
+                                        capture_output=True, check=False)
+                self.assertEqual(result.returncode, 2)
+                self.assertRegex(result.stderr, f'^stickslip-fit: broken.nml: .*{words}')
             (folder / 'bad.nml').write_text(text.replace('records', 'recordings'))
             result = subprocess.run([sys.executable, '-m', 'stickslip._fit_command', 'bad.nml'], cwd=folder, text=True,
                                     capture_output=True, check=False)
