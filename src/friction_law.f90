@@ -74,6 +74,11 @@ module friction_law
         !> for every law that there is).
         logical :: follows_path
 
+        !> Contact pressure at the start of the increment, 0 while open, for laws whose state
+        !> depends on how the pressure changes. Whoever takes a point through an increment sets it.
+        !> [F/L^2]
+        real(wp) :: pressure_start
+
         !> The largest tangential traction that the surface carries (module friction_shear_cap);
         !> huge for none. Whoever makes a law for use sets it. [F/L^2]
         real(wp) :: tau_max
@@ -93,6 +98,7 @@ module friction_law
         procedure :: needs_time => needs_no_time
         procedure :: solve => not_solved
         procedure :: start_rate => no_start_rate
+        procedure :: pressed => not_pressed
     end type law
 
     !> What the internal variable `r` of a law is called.
@@ -351,6 +357,17 @@ contains
 
         rate = 0.0_wp
     end function no_start_rate
+
+    !> The state after a sudden change of the pressure, for those who integrate rates. A law whose
+    !> state depends on that overrides this.
+    pure function not_pressed(self, state, before, after) result(new)
+        class(law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: before, after   !! contact pressure, > 0 [F/L^2]
+        type(law_state) :: new
+
+        new = state
+    end function not_pressed
 
     pure function no_internal_variable() result(variable)
         type(internal_variable) :: variable

@@ -6,6 +6,7 @@ module friction_law_choice
     use friction_flash_heating_law, only : flash_heating_law
     use friction_kinds, only : wp
     use friction_law, only : law, named_law
+    use friction_linker_dieterich_law, only : linker_dieterich_law
     use friction_law_constants, only : law_constant, positive
     use friction_rate_state_law, only : rate_state_law
     use friction_shear_cap, only : cap_constants, capped_law
@@ -29,7 +30,8 @@ module friction_law_choice
     integer, parameter, public :: law_slip_weakening = 5
     integer, parameter, public :: law_slip_weakening_healing = 6
     integer, parameter, public :: law_flash_heating = 7
-    integer, parameter, public :: law_count = 7   !! they are numbered from 1 to this
+    integer, parameter, public :: law_linker_dieterich = 8
+    integer, parameter, public :: law_count = 8   !! they are numbered from 1 to this
 
     !> Material constants: places in `props`. The law's own ones follow, then the shear cap, then
     !> those of orthotropic friction.
@@ -43,6 +45,7 @@ module friction_law_choice
 
     !> Room for a law of whichever kind, of which one is in use.
     type :: law_storage
+        class(named_law), pointer :: own   !! that one, without options
         type(subloading_law) :: subloading
         type(subloading_exact_law) :: exact
         type(subloading_general_law) :: general
@@ -52,6 +55,7 @@ module friction_law_choice
         type(slip_weakening_law) :: slip_weakening
         type(slip_weakening_healing_law) :: slip_weakening_healing
         type(flash_heating_law) :: flash_heating
+        type(linker_dieterich_law) :: linker_dieterich
         type(capped_law) :: capped
     end type law_storage
 
@@ -71,6 +75,7 @@ contains
         case (law_slip_weakening); found => storage%slip_weakening
         case (law_slip_weakening_healing); found => storage%slip_weakening_healing
         case (law_flash_heating); found => storage%flash_heating
+        case (law_linker_dieterich); found => storage%linker_dieterich
         case default; found => null()
         end select
     end subroutine find_law
@@ -84,6 +89,7 @@ contains
         select case (number)
         case (law_rate_state); found => storage%rate_state
         case (law_flash_heating); found => storage%flash_heating
+        case (law_linker_dieterich); found => storage%linker_dieterich
         case default; found => null()
         end select
     end subroutine find_rate_law
@@ -140,6 +146,7 @@ contains
         own%follows_path = .false.
         own%tau_max = huge(own%tau_max)
         if (number == law_subloading) call choose_form(storage, own)
+        storage%own => own
     end subroutine choose_own_law
 
     !> The subloading law in one of its forms.

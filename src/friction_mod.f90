@@ -11,9 +11,9 @@ module friction_mod
     use, intrinsic :: iso_fortran_env, only : int64
     use friction_anisotropy, only : direction_associated, direction_radial, largest_mu_ratio
     use friction_kinds, only : wp
-    use friction_law_choice, only : law_coulomb, law_flash_heating, law_rate_state, &
-        law_slip_weakening, law_slip_weakening_healing, law_static_kinetic, law_subloading, &
-        prop_alpha_n, prop_alpha_t, prop_law
+    use friction_law_choice, only : law_coulomb, law_flash_heating, law_linker_dieterich, &
+        law_rate_state, law_slip_weakening, law_slip_weakening_healing, law_static_kinetic, &
+        law_subloading, prop_alpha_n, prop_alpha_t, prop_law
     use friction_law_facts, only : broken_rule, constant_table, friction_check, &
         friction_coefficient_change, friction_constants, friction_default, friction_facts, &
         friction_healing_rate, friction_internal_variable, friction_law_count, friction_law_name, &
@@ -50,7 +50,8 @@ module friction_mod
         broken_rule, constant_table, internal_variable, law_constant, law_facts, rule_text, &
         text_length, word_of
     public :: prop_alpha_n, prop_alpha_t, prop_law   ! places in `props` that all laws share
-    public :: law_coulomb, law_flash_heating, law_rate_state, law_slip_weakening, &
+    public :: law_coulomb, law_flash_heating, law_linker_dieterich, law_rate_state, &
+        law_slip_weakening, &
         law_slip_weakening_healing, law_static_kinetic, law_subloading
     public :: scheme_backward_euler, scheme_exact_rate
     public :: u_cotangent, u_logarithm, u_reciprocal

@@ -35,6 +35,8 @@ LAWS = {
                              [6, 1000, 800, 0.45, 0.25, 1e-2, 1]),
     'FlashHeating': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction', 'WeakFriction',
                       'WeakeningSlipRate'], [7, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.25, 0.05]),
+    'LinkerDieterich': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction',
+                         'PressureEffect'], [8, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.1]),
 }
 PLANE = ['Axisymmetrical', 'PlaneStress', 'PlaneStrain', 'GeneralisedPlaneStrain']
 # pressed, sheared, reversed, held, lifted, closed, sheared: total gap, normal first

@@ -15,6 +15,7 @@ import block_on_slope  # noqa: E402
 import closed_forms  # noqa: E402
 import fault  # noqa: E402
 import flash_heating  # noqa: E402
+import linker_dieterich  # noqa: E402
 import orders  # noqa: E402
 import rate_and_state  # noqa: E402
 import stability  # noqa: E402
@@ -37,6 +38,7 @@ def main():
     closed_forms.validate(library, report)
     rate_and_state.validate(program, report)
     flash_heating.validate(library, program, report)
+    linker_dieterich.validate(library, program, report)
     stability.validate(program, report)
     orders.validate(program, report)
     fault.validate(program, report)

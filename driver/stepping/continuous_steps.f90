@@ -290,6 +290,7 @@ contains
         associate (eq => self%equations)
             if (pressure > self%open_below .and. eq%phase /= phase_open) then
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
+                call press(self, state%normal, pressure)
                 call apply_normal_traction(self%system, pressure, state, taken)
                 self%known = .false.
                 if (eq%rigid) then
@@ -319,6 +320,19 @@ contains
             end if
         end associate
     end subroutine take_pressure
+
+    !> What the law remembers may depend on the pressure.
+    subroutine press(self, before, after)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: before, after   !! pressure [F/L^2]
+        type(law_state) :: state
+
+        associate (eq => self%equations)
+            if (.not. eq%surface%traits%logarithmic) return
+            state = eq%surface%law%pressed(eq%law_state_of(self%y, before), before, after)
+            self%y(memory) = log(state%r)
+        end associate
+    end subroutine press
 
     !> Slip at once, as far as the friction routine lets the contact slip in a time, if that is far.
     subroutine slip_at_once(self, pressure, before, push, dt, far)

@@ -123,7 +123,7 @@ contains
                 call following_contact(self, y, pull, pressure, pressure_rate, contact)
                 failed = .false.
             else
-                call rigid_contact(self, y, pull, pressure, contact, failed)
+                call rigid_contact(self, y, pull, pressure, pressure_rate, contact, failed)
             end if
         else if (self%phase == phase_slide .and. self%surface%traits%onset == onset_drops) then
             call dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
@@ -245,9 +245,9 @@ contains
     end subroutine dropping_contact
 
     !> A contact without a spring: the block's velocity is the slip rate.
-    pure subroutine rigid_contact(self, y, pull, pressure, contact, failed)
+    pure subroutine rigid_contact(self, y, pull, pressure, pressure_rate, contact, failed)
         class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: y(controlled), pull, pressure
+        real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
         type(contact_motion), intent(out) :: contact
         logical, intent(out) :: failed
         type(load_rates) :: load
@@ -275,7 +275,7 @@ contains
             if (self%phase == phase_capped) contact%traction = sense * self%surface%tau_max
         end if
         if (self%surface%traits%memory == 0) return
-        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, pressure_rate, .false.)
         call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
             contact)
     end subroutine rigid_contact
@@ -305,7 +305,7 @@ contains
         contact%traction = self%alpha * y(elastic)
         sense = self%sense_of(contact%traction)
         state = law_state_of(self, y, pressure)
-        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, pressure_rate, .false.)
         call self%surface%law%slip_rate(state, load, contact%slip, jumps)
         contact%velocity = sense * contact%slip
         call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
@@ -406,7 +406,8 @@ contains
         tau = self%alpha * y(elastic)
         if (.not. self%rigid .or. self%follows_traction()) return
         call inputs(self, t, v_drive, pressure, pressure_rate)
-        call rigid_contact(self, y, self%stiffness * y(extension), pressure, contact, failed)
+        call rigid_contact(self, y, self%stiffness * y(extension), pressure, pressure_rate, &
+            contact, failed)
         tau = contact%traction
     end function traction
 

@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 
 from . import _library
 
-__all__ = ['AtPoints', 'Coulomb', 'FlashHeating', 'Law', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing', 'StaticKinetic',
-           'Subloading']
+__all__ = ['AtPoints', 'Coulomb', 'FlashHeating', 'Law', 'LinkerDieterich', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing',
+           'StaticKinetic', 'Subloading']
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -250,3 +250,23 @@ class FlashHeating(Law):
 
     number = 7
     name = 'flash_heating'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class LinkerDieterich(Law):
+    """Rate-and-state friction whose state depends on the contact pressure.
+
+    a, b, d_c, v0, f0, evolution, theta_0: as of RateAndState, b > 0; alpha: effect of the pressure on the state [-].
+    """
+
+    a: float
+    b: float
+    d_c: float
+    v0: float
+    f0: float
+    alpha: float
+    evolution: str = 'ageing'
+    theta_0: float | None = None
+
+    number = 8
+    name = 'linker_dieterich'

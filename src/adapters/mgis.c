@@ -291,3 +291,5 @@ LAW(StickSlipSlipWeakening, 5, 3, "StaticFriction", "KineticFriction", "Critical
 LAW(StickSlipSlipWeakeningHealing, 6, 4, "StaticFriction", "KineticFriction", "CriticalSlip", "HealingRate")
 LAW(StickSlipFlashHeating, 7, 7, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
     "ReferenceFriction", "WeakFriction", "WeakeningSlipRate")
+LAW(StickSlipLinkerDieterich, 8, 6, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
+    "ReferenceFriction", "PressureEffect")

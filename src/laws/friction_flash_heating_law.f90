@@ -56,6 +56,9 @@ module friction_flash_heating_law
         default_from=3, default_per=4)]
     integer, parameter :: n_needed = 7
 
+    !> Least a, by b: the bounds of the search are differences of terms that large.
+    real(wp), parameter :: least_direct = 1.0e-9_wp
+
     !> Steady sliding at a slip rate.
     type :: steady_sliding
         real(wp) :: u          !! ln sinh of the next
@@ -81,6 +84,7 @@ contains
         status = friction_bad_property
         if (constants(2) < table(2)%lower .or. constants(7) < table(7)%lower) return
         if (constants(6) < table(6)%lower .or. constants(6) > constants(table(6)%not_above)) return
+        if (self%a < least_direct * self%b) return
         call complete_constants(n_needed, table, n, constants, c, status)
         if (status /= friction_ok) return
         self%evolution = shifted

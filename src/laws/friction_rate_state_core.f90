@@ -15,8 +15,8 @@ module friction_rate_state_core
     implicit none
     private
 
-    public :: state_exponent, asinh_exp, slope_asinh_exp, slip_rate, decayed_part, ageing_rate, &
-        slip_law_rate, mean_decay, aged_state, aged_slope, slipped_slope
+    public :: fall_of_mean, mean_growth, state_exponent, asinh_exp, slope_asinh_exp, slip_rate, &
+        decayed_part, ageing_rate, slip_law_rate, mean_decay, aged_state, aged_slope, slipped_slope
 
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
     real(wp), parameter :: far = 20.0_wp   !! beyond, asinh(e^u) is u + ln(2) to the last bit
@@ -143,5 +143,40 @@ contains
 
         by_ln_slip = x * (left * pull - mean)
     end function slipped_slope
+
+    !> `mean_decay`, and minus its derivative, for x of either sign.
+    elemental subroutine mean_growth(x, left, mean, fall)
+        real(wp), intent(in) :: x       !! -200 or more
+        real(wp), intent(in) :: left    !! e^-x
+        real(wp), intent(out) :: mean   !! (1 - e^-x)/x
+        real(wp), intent(out) :: fall   !! > 0
+        real(wp) :: back
+
+        if (x < 0.0_wp) then   ! what decays backwards
+            back = exp(x)
+            mean = mean_decay(-x, back)
+            fall = left * (mean - fall_of_mean(-x, back, mean))
+            mean = left * mean
+        else
+            mean = mean_decay(x, left)
+            fall = fall_of_mean(x, left, mean)
+        end if
+    end subroutine mean_growth
+
+    !> Minus the derivative of `mean_decay` by x, 1/2 at x = 0; it shrinks with x.
+    elemental function fall_of_mean(x, left, mean) result(fall)
+        real(wp), intent(in) :: x      !! >= 0
+        real(wp), intent(in) :: left   !! e^-x
+        real(wp), intent(in) :: mean   !! (1 - e^-x)/x
+        real(wp) :: fall
+        real(wp), parameter :: small = 1.0e-3_wp   !! below, the series is exact to round-off
+
+        if (x > small) then
+            fall = (mean - left) / x
+        else
+            fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
+                / 144.0_wp)))
+        end if
+    end function fall_of_mean
 
 end module friction_rate_state_core

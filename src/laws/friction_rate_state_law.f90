@@ -22,8 +22,8 @@ module friction_rate_state_law
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         name_length, positive
     use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
-        mean_decay, &
-        slip_law_rate, slipped_slope, slope_asinh_exp, state_exponent
+        fall_of_mean, mean_decay, mean_growth, slip_law_rate, slipped_slope, slope_asinh_exp, &
+        state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -42,6 +42,7 @@ module friction_rate_state_law
         real(wp) :: f0        !! friction coefficient of steady sliding at v0, >= 0 [-]
         integer :: evolution  !! how theta evolves: one of the three above
         real(wp) :: theta_0   !! theta of a virgin point, > 0 [T]
+        real(wp) :: alpha     !! effect of the pressure on the state, >= 0; 0 in this law [-]
     contains
         procedure :: read => read_constants
         procedure, nopass :: name
@@ -62,6 +63,7 @@ module friction_rate_state_law
         procedure :: settle
         procedure :: needs_time
         procedure :: solve
+        procedure :: pressed
         procedure :: read_common
         procedure :: steady_shift => no_shift
         procedure :: shift_bounds => no_shift_bounds
@@ -84,6 +86,7 @@ module friction_rate_state_law
     !> Least a, by the larger of b and f0: below, round-off of ln(theta) is more than the whole
     !> direct effect.
     real(wp), parameter :: least_direct = 1.0e-12_wp
+    real(wp), parameter :: most_pressing = 200.0_wp   !! of ln(theta) in an increment
     real(wp), parameter :: least_state = 1.0e-250_wp   !! v0 theta/d_c of a shifted law ends there
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
@@ -123,6 +126,7 @@ contains
         self%d_c = constants(3)
         self%v0 = constants(4)
         self%f0 = constants(5)
+        self%alpha = 0.0_wp
         if (self%a < least_direct * max(self%b, self%f0)) return
         status = friction_ok
     end subroutine read_common
@@ -191,11 +195,20 @@ contains
         type(law_state), intent(in) :: old
         type(law_state), intent(out) :: new
         real(wp), intent(out) :: strength
+        real(wp) :: z, mean, fall
 
         new%mu = 0.0_wp
         new%r = old%r
         if (self%evolution == ageing) new%r = min(old%r + dt, largest)
         strength = 0.0_wp
+        if (.not. self%alpha > 0.0_wp) return
+        z = pressing(self, pressure)
+        new%r = old%r * exp(-z)
+        if (self%evolution == ageing) then
+            call mean_growth(z, exp(-z), mean, fall)
+            new%r = new%r + dt * mean
+        end if
+        new%r = min(max(new%r, tiny(z)), largest)
     end subroutine rest
 
     pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
@@ -204,11 +217,11 @@ contains
         type(law_state), intent(in) :: old
         type(law_state), intent(out) :: new
         real(wp), intent(out) :: resistance, d_slip, d_pressure
-        real(wp) :: s, least, ln_theta, by_ln_slip, x, part
+        real(wp) :: s, least, ln_theta, by_ln_slip, by_pressing, x, part
 
         least = least_slip * self%d_c
         s = max(slip, least)
-        call evolve(self, s, dt, old%r, new%r, ln_theta, by_ln_slip)
+        call evolve(self, s, pressure, dt, old%r, new%r, ln_theta, by_ln_slip, by_pressing)
         x = direct_exponent(self, s, dt, ln_theta)
         new%mu = self%a * asinh_exp(x)
         d_slip = pressure * min(slope_asinh_exp(x) * ((self%a + self%b * by_ln_slip) / s), &
@@ -219,40 +232,110 @@ contains
             new%mu = part * new%mu
         end if
         d_pressure = new%mu
+        if (self%alpha > 0.0_wp) d_pressure = d_pressure + min(slip / least, 1.0_wp) &
+            * (slope_asinh_exp(x) * self%alpha * by_pressing)
         resistance = new%mu * pressure
     end subroutine slide
 
+    !> How much ln(theta) falls because the pressure has changed since the start of the increment,
+    !> taken to change by the same share in each instant: alpha/b ln(p/p_n). Where it grows from
+    !> nothing, or falls to that, the state is left alone.
+    pure function pressing(self, pressure) result(fall)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
+        real(wp) :: fall
+
+        fall = 0.0_wp
+        if (.not. min(pressure, self%pressure_start) > 0.0_wp) return
+        fall = self%alpha / self%b * (log(pressure) - log(self%pressure_start))
+        fall = max(-most_pressing, min(fall, most_pressing))
+    end function pressing
+
+    !> Does that depend on the pressure at the end?
+    pure function presses(self, pressure)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
+        logical :: presses
+
+        presses = min(pressure, self%pressure_start) > 0.0_wp
+        if (presses) presses = abs(pressing(self, pressure)) < most_pressing
+    end function presses
+
+    !> A sudden change of the pressure.
+    pure function pressed(self, state, before, after) result(new)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: before, after
+        type(law_state) :: new
+
+        new = state
+        if (self%alpha > 0.0_wp) new%r = state%r * (before / after)**(self%alpha / self%b)
+    end function pressed
+
     !> theta after a slip, and how it depends on that.
-    pure subroutine evolve(self, slip, dt, theta_n, theta, ln_theta, by_ln_slip)
+    pure subroutine evolve(self, slip, pressure, dt, theta_n, theta, ln_theta, by_ln_slip, &
+        by_pressing)
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: slip           !! > 0 [L]
+        real(wp), intent(in) :: pressure       !! > 0 [F/L^2]
         real(wp), intent(in) :: dt             !! > 0 [T]
         real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
         real(wp), intent(out) :: theta         !! at its end, > 0 [T]
         real(wp), intent(out) :: ln_theta      !! ln(theta)
         real(wp), intent(out) :: by_ln_slip    !! d(ln theta)/d(ln slip)
-        real(wp) :: x, left, mean, pull, shift, by_ln_v
+        real(wp), intent(out) :: by_pressing   !! d(ln theta)/d(pressing), see there; 0 at its ends
+        real(wp) :: x, z, left, mean, fall
 
         x = slip / self%d_c
-        left = exp(-x)
-        mean = mean_decay(x, left)
+        by_pressing = 0.0_wp
         if (self%evolution == ageing) then
-            theta = aged_state(theta_n, dt, left, mean)
+            if (self%alpha > 0.0_wp) then
+                z = pressing(self, pressure)
+                left = exp(-(x + z))
+                call mean_growth(x + z, left, mean, fall)
+                theta = aged_state(theta_n, dt, left, mean)
+                by_pressing = -(theta_n * left + dt * fall) / theta
+                by_ln_slip = x * by_pressing
+                if (.not. presses(self, pressure)) by_pressing = 0.0_wp
+            else
+                left = exp(-x)
+                mean = mean_decay(x, left)
+                theta = aged_state(theta_n, dt, left, mean)
+                by_ln_slip = aged_slope(x, theta_n, dt, left, mean, theta)
+            end if
             ln_theta = log(theta)
-            by_ln_slip = aged_slope(x, theta_n, dt, left, mean, theta)
         else
-            pull = log(dt) - log(x) - log(theta_n)
-            shift = 0.0_wp
-            by_ln_v = 0.0_wp
-            if (self%evolution == shifted) call self%steady_shift(log(slip) - log(dt), shift, &
-                by_ln_v)
-            pull = pull + shift
-            ln_theta = log(theta_n) + x * mean * pull
-            by_ln_slip = slipped_slope(x, left, mean, pull) + x * mean * by_ln_v
+            left = exp(-x)
+            mean = mean_decay(x, left)
+            call slip_along(self, slip, dt, theta_n, left, mean, ln_theta, by_ln_slip)
+            if (self%alpha > 0.0_wp) then
+                z = pressing(self, pressure)
+                ln_theta = ln_theta - z * mean
+                by_ln_slip = by_ln_slip - z * (left - mean)
+                if (presses(self, pressure)) by_pressing = -mean
+            end if
             theta = max(exp(ln_theta), tiny(theta))
             if (self%evolution == shifted) theta = max(theta, least_state * (self%d_c / self%v0))
         end if
     end subroutine evolve
+
+    !> The slip law at constant pressure, plain or shifted.
+    pure subroutine slip_along(self, slip, dt, theta_n, left, mean, ln_theta, by_ln_slip)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: slip, dt, theta_n      !! as above
+        real(wp), intent(in) :: left, mean             !! e^-x and `mean_decay`, x = slip/d_c
+        real(wp), intent(out) :: ln_theta, by_ln_slip
+        real(wp) :: x, pull, shift, by_ln_v
+
+        x = slip / self%d_c
+        pull = log(dt) - log(x) - log(theta_n)
+        shift = 0.0_wp
+        by_ln_v = 0.0_wp
+        if (self%evolution == shifted) call self%steady_shift(log(slip) - log(dt), shift, by_ln_v)
+        pull = pull + shift
+        ln_theta = log(theta_n) + x * mean * pull
+        by_ln_slip = slipped_slope(x, left, mean, pull) + x * mean * by_ln_v
+    end subroutine slip_along
 
     !> How an extension shifts ln(theta) of steady sliding from ln(d_c/v): asked of those whose
     !> evolution is `shifted`, and of no other.
@@ -300,11 +383,11 @@ contains
             most = max(first%d_slip, last%d_slip)
             return
         end if
-        call evolution_bounds(self, from, last%slip, dt, old%r, e_low, e_high)
+        call evolution_bounds(self, [from, last%slip], pressure, dt, old%r, e_low, e_high)
         ! ln(theta) above its last value, and below its first one
         grown = max(0.0_wp, e_high * ((last%slip - from) / self%d_c))
         shrunk = max(0.0_wp, log(first%state%r) - log(last%state%r))
-        if (self%evolution == shifted) shrunk = grown   ! there may be more than one peak
+        if (self%evolution == shifted .or. self%alpha > 0.0_wp) shrunk = grown   ! it may have more
         s_high = slope_of_asinh(last%state%mu / self%a, self%b / self%a * grown)
         s_low = slope_of_asinh(y_first, -self%b / self%a * shrunk)
         low = self%a / last%slip - (self%b / self%d_c) * e_high
@@ -337,35 +420,45 @@ contains
     !>
     !>     ageing law:  e = (theta_n e^-x + dt fall)/theta,  fall = -d/dx (1 - e^-x)/x
     !>     slip law:    e = (1 - e^-x)/x - e^-x pull,        pull = ln(dt/x) - ln(theta_n)
-    pure subroutine evolution_bounds(self, from, to, dt, theta_n, e_low, e_high)
+    pure subroutine evolution_bounds(self, slip, pressure, dt, theta_n, e_low, e_high)
         class(rate_state_law), intent(in) :: self
-        real(wp), intent(in) :: from, to       !! slips, 0 < from < to [L]
+        real(wp), intent(in) :: slip(2)        !! between which slips, > 0 [L]
+        real(wp), intent(in) :: pressure       !! > 0 [F/L^2]
         real(wp), intent(in) :: dt             !! > 0 [T]
         real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
         real(wp), intent(out) :: e_low, e_high !! [-]
-        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), shift(2), by_ln_v(2)
+        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), shift(2), by_ln_v(2), z
 
-        x = [from, to] / self%d_c
-        left = exp(-x)
-        mean = [mean_decay(x(1), left(1)), mean_decay(x(2), left(2))]
+        z = 0.0_wp
+        if (self%alpha > 0.0_wp) z = pressing(self, pressure)
+        x = slip / self%d_c
         if (self%evolution == ageing) then
-            fall = [fall_of_mean(x(1), left(1), mean(1)), fall_of_mean(x(2), left(2), mean(2))]
+            x = x + z
+            left = exp(-x)
+            call mean_growth(x, left, mean, fall)
             theta = max(theta_n * left + dt * mean, tiny(dt))
             fall = theta_n * left + dt * fall
             e_low = fall(2) / theta(1)
             e_high = min(1.0_wp, fall(1) / theta(2))
         else
+            left = exp(-x)
+            mean = mean_decay(x, left)
             pull = log(dt) - log(x) - log(theta_n)
             e_low = mean(2)
             e_high = mean(1)
             if (self%evolution == shifted) then
-                call self%shift_bounds(log([from, to]) - log(dt), shift, by_ln_v)
+                call self%shift_bounds(log(slip) - log(dt), shift, by_ln_v)
                 pull = pull + shift([2, 1])
                 e_low = (1.0_wp - by_ln_v(2)) * merge(mean(2), mean(1), by_ln_v(2) < 1.0_wp)
                 e_high = (1.0_wp - by_ln_v(1)) * merge(mean(1), mean(2), by_ln_v(1) < 1.0_wp)
             end if
             e_low = e_low - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
             e_high = e_high - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
+            if (abs(z) > 0.0_wp) then
+                fall = z * fall_of_mean(x, left, mean)
+                e_low = e_low - maxval(fall)
+                e_high = e_high - minval(fall)
+            end if
         end if
     end subroutine evolution_bounds
 
@@ -384,7 +477,7 @@ contains
         low = least_slip * self%d_c
         high = trial / stiffness
         if (.not. low < high) return
-        call evolution_bounds(self, low, high, dt, old%r, e_low, e_high)
+        call evolution_bounds(self, [low, high], pressure, dt, old%r, e_low, e_high)
         if (pressure * (self%b * e_high / self%d_c - self%a / high) > stiffness) return
 
         small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
@@ -424,12 +517,13 @@ contains
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: misfit, stiffness, pressure
         type(sliding), intent(inout) :: answer
-        real(wp) :: stiff
+        real(wp) :: stiff, by_state
 
         stiff = max(answer%d_slip, 0.0_wp)
+        by_state = answer%d_pressure - answer%state%mu
         answer%resistance = answer%resistance + misfit * (stiff / (stiffness + stiff))
         answer%state%mu = answer%resistance / pressure
-        answer%d_pressure = answer%state%mu
+        answer%d_pressure = answer%state%mu + by_state
     end subroutine settle
 
     !> The exponent X is a sum of logarithms, multiplied by b/a.
@@ -443,6 +537,7 @@ contains
 
         s = max(slid%slip, least_slip * self%d_c)
         terms = abs(log(self%v0)) + abs(log(self%d_c)) + abs(log(old%r)) + abs(log(slid%state%r))
+        if (self%evolution == shifted) terms = terms + abs(log(s)) + abs(log(dt))
         terms = 1.0_wp + abs(log(s)) + abs(log(dt)) + abs(log(self%v0)) + (self%f0 + self%b &
             * terms) / self%a
         scale = slid%resistance * (1.0_wp + terms)
@@ -513,6 +608,8 @@ contains
                 least_slip * self%v0)), shift, by_ln_v)
             rates%r = slip_law_rate(x, log(max(x, tiny(x))) - shift)
         end if
+        if (self%alpha > 0.0_wp .and. load%pressure > 0.0_wp) rates%r = rates%r - self%alpha &
+            / self%b * state%r * (load%pressure_rate / load%pressure)
         if (load%pressure > 0.0_wp) rates%mu = (load%loading - load%stiffness * slip_rate &
             - load%traction / load%pressure * load%pressure_rate) / load%pressure
     end function state_rates
@@ -549,21 +646,5 @@ contains
         x = log(slip) - log(dt) - log(2.0_wp * self%v0) + state_exponent(self%a, self%b, self%f0, &
             log(self%v0) - log(self%d_c) + ln_theta)
     end function direct_exponent
-
-    !> Minus the derivative of that by x, 1/2 at x = 0; it shrinks with x.
-    pure function fall_of_mean(x, left, mean) result(fall)
-        real(wp), intent(in) :: x      !! >= 0
-        real(wp), intent(in) :: left   !! e^-x
-        real(wp), intent(in) :: mean   !! (1 - e^-x)/x
-        real(wp) :: fall
-        real(wp), parameter :: small = 1.0e-3_wp   !! below, the series is exact to round-off
-
-        if (x > small) then
-            fall = (mean - left) / x
-        else
-            fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
-                / 144.0_wp)))
-        end if
-    end function fall_of_mean
 
 end module friction_rate_state_law

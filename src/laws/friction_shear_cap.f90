@@ -36,6 +36,7 @@ module friction_shear_cap
         procedure :: slopes
         procedure :: needs_time
         procedure :: solve
+        procedure :: pressed
     end type capped_law
 
 contains
@@ -191,5 +192,14 @@ contains
 
         call self%inner%solve(trial, stiffness, pressure, dt, old, answer, solved)
     end subroutine solve
+
+    pure function pressed(self, state, before, after) result(new)
+        class(capped_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: before, after
+        type(law_state) :: new
+
+        new = self%inner%pressed(state, before, after)
+    end function pressed
 
 end module friction_shear_cap

@@ -218,7 +218,7 @@ static void bad_calls_are_codes_and_touch_nothing(void)
 /* The ends of the ranges that are told: those of the stiffnesses are taken, what is outside any is refused. */
 static void ranges_are_those_that_are_checked(void)
 {
-    enum { laws = 7 };
+    enum { laws = 8 };
     static const double valid[laws + 1][15] = {{0},
                                                {1, 1e3, 8e2, .45, .25, 8, .2, 60, .45, 0, 0, 0, 1, 0},
                                                {2, 1e3, 8e2, .4, 0, 1, 0},
@@ -226,7 +226,8 @@ static void ranges_are_those_that_are_checked(void)
                                                {4, 1e3, 8e2, .01, .015, .01, .01, .4, 0, 1, 0, 1, 0},
                                                {5, 1e3, 8e2, .45, .25, .01, 0, 1, 0},
                                                {6, 1e3, 8e2, .45, .25, .01, 2, 0, 1, 0},
-                                               {7, 1e3, 8e2, .01, .015, .01, .01, .4, .1, 1, 8, 1, 0, 1, 0}};
+                                               {7, 1e3, 8e2, .01, .015, .01, .01, .4, .1, 1, 8, 1, 0, 1, 0},
+                                               {8, 1e3, 8e2, .01, .015, .01, .01, .4, .1, 0, 1, 0, 1, 0}};
     friction_law_facts law;
     friction_constant_facts constant;
     double props[15];

@@ -29,6 +29,7 @@ LAWS = {
     'rate_and_state': {'a': '0.01', 'b': '0.015', 'd_c': '0.01', 'v0': '0.001', 'f0': '0.6'},
     'slip_weakening': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.05'},
     'flash_heating': {'a': '0.01', 'b': '0.015', 'd_c': '0.01', 'v0': '0.001', 'f0': '0.6', 'f_w': '0.2', 'v_w': '0.3'},
+    'linker_dieterich': {'a': '0.01', 'b': '0.015', 'd_c': '0.01', 'v0': '0.001', 'f0': '0.6', 'alpha': '0.2'},
     'slip_weakening_healing': {'mu_s': '0.4', 'mu_k': '0.2', 'd_c': '0.05', 'xi': '10'},
 }
 
@@ -314,6 +315,7 @@ class Laws(Program):
         self.refused(law_namelist('slip_weakening', mu_s='0.1'), '&friction mu_s = 0.1: must be >= mu_k')
         self.refused(law_namelist('slip_weakening_healing', xi='-1'), '&friction xi = -1: must be >= 0')
         self.refused(law_namelist('flash_heating', f_w='0.7'), '&friction f_w = 0.7: must be from 0 to f0')
+        self.refused(law_namelist('linker_dieterich', alpha='-0.1'), '&friction alpha = -0.1: must be >= 0')
         self.refused(law_namelist('flash_heating', n='0.5', v_w='0'), '&friction n = 0.5: must be',
                      '&friction v_w = 0: must be > 0')
         self.refused(law_namelist('rate_and_state', evolution="'growing'", theta_0='0'),

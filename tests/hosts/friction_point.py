@@ -15,9 +15,10 @@ LAWS = {
     'rate-and-state': [4, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0, 0.5],
     'slip-weakening': [5, 1000, 800, 0.45, 0.25, 1e-2],
     'slip-weakening, healing': [6, 1000, 800, 0.45, 0.25, 1e-2, 1],
+    'Linker-Dieterich': [8, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.1, 0, 0.5],
     'flash heating': [7, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.25, 0.05, 8, 0.5],
 }
-CREEPING = ('rate-and-state', 'flash heating')   # under any load
+CREEPING = ('rate-and-state', 'flash heating', 'Linker-Dieterich')   # under any load
 
 
 Numbers = ctypes.POINTER(ctypes.c_double)

@@ -17,6 +17,8 @@ LAWS = {
                                                                   xi=2),
     'flash_heating': stickslip.laws.FlashHeating(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6,
                                                  f_w=0.2, v_w=0.01),
+    'linker_dieterich': stickslip.laws.LinkerDieterich(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6,
+                                                       alpha=0.2),
 }
 
 

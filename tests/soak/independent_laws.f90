@@ -12,7 +12,7 @@ module independent_laws
 
     !> What `props` says.
     type :: material
-        integer :: law           !! 1 to 7
+        integer :: law           !! 1 to 8
         real(qp) :: alpha_n, alpha_t
         real(qp) :: own(9)       !! the law's own constants
         real(qp) :: mu_0         !! of a virgin point
@@ -31,10 +31,13 @@ module independent_laws
         real(qp) :: q_scale      !! of the terms of q
         real(qp) :: mu, r        !! internal variables at the start; for a virgin point its own
         real(qp) :: mu_rest      !! friction coefficient without slip
+        real(qp) :: pressing     !! of law 8: how much ln(theta) falls by the change of pressure
         real(qp) :: r_start      !! where sliding starts: the least R on the way
     end type load_case
 
     real(qp), parameter :: half_pi = acos(0.0_qp)
+
+    real(qp), parameter :: largest = 2.0_qp**333   !! what grows ends there
 
     !> v0 theta/d_c of law 7 ends here.
     real(qp), parameter :: least_state = 1.0e-250_dp
@@ -45,13 +48,13 @@ contains
     pure logical function creeps(law)
         integer, intent(in) :: law   !! number
 
-        creeps = any(law == [4, 7])
+        creeps = any(law == [4, 7, 8])
     end function creeps
 
     subroutine read_material(props, mat)
         real(dp), intent(in) :: props(:)
         type(material), intent(out) :: mat
-        integer, parameter :: places(7) = [12, 5, 7, 11, 7, 8, 13]   ! of the cap
+        integer, parameter :: places(8) = [12, 5, 7, 11, 7, 8, 13, 12]   ! of the cap
         integer :: n_own, cap
 
         mat%law = nint(props(1))
@@ -69,6 +72,9 @@ contains
         else if (mat%law == 4) then
             if (size(props) > 8) mat%form = nint(props(9))
             if (size(props) < 10) mat%own(7) = mat%own(3) / mat%own(4)
+        else if (mat%law == 8) then
+            if (size(props) > 9) mat%form = nint(props(10))
+            if (size(props) < 11) mat%own(8) = mat%own(3) / mat%own(4)
         else if (mat%law == 7) then
             mat%form = 1
             if (size(props) < 11) mat%own(8) = 8.0_qp
@@ -113,7 +119,11 @@ contains
             this%r = 0.0_qp
             if (mat%law == 4) this%r = mat%own(7)
             if (mat%law == 7) this%r = mat%own(9)
+            if (mat%law == 8) this%r = mat%own(8)
         end if
+        this%pressing = 0.0_qp
+        if (mat%law == 8 .and. closed .and. old(2) < 0.0_dp) this%pressing = max(-200.0_qp, &
+            min(mat%own(6) / mat%own(2) * log(this%p / (-mat%alpha_n * old(2))), 200.0_qp))
         if (.not. closed) return
         this%mu_rest = mu_after(mat, this, 0.0_qp)
         this%r_start = this%r
@@ -214,10 +224,10 @@ contains
         real(qp) :: mean
 
         mean = 1.0_qp - 0.5_qp * x + x**2 / 6.0_qp
-        if (x > 1.0e-10_qp) mean = (1.0_qp - exp(-x)) / x
+        if (abs(x) > 1.0e-10_qp) mean = (1.0_qp - exp(-x)) / x
     end function mean_decay
 
-    !> ln(theta) of laws 4 and 7 after the slip s.
+    !> ln(theta) of laws 4, 7 and 8 after the slip s.
     function ln_theta(mat, this, s) result(ln)
         type(material), intent(in) :: mat
         type(load_case), intent(in) :: this
@@ -227,13 +237,15 @@ contains
 
         x = s / mat%own(3)
         if (mat%form == 0) then
+            x = x + this%pressing
             ln = log(this%r * exp(-x) + this%dt * mean_decay(x))
         else
             ln = log(this%r)
+            ln = ln - this%pressing * mean_decay(x)
             if (.not. x > 0.0_qp) return
             steady = log(this%dt) - log(x)
             if (mat%law == 7) steady = heated(mat, s / this%dt)
-            ln = ln + x * mean_decay(x) * (steady - ln)
+            ln = ln + x * mean_decay(x) * (steady - log(this%r))
         end if
     end function ln_theta
 
@@ -283,9 +295,9 @@ contains
         select case (mat%law)
         case (1)
             call ratio_misfit(mat, this%r_start, s, min(r, 1.0_qp), misfit(2), scale(2))
-        case (4, 7)
+        case (4, 7, 8)
             x = ln_theta(mat, this, s)
-            misfit(2) = log(r) - x
+            misfit(2) = log(r) - min(x, log(largest))
             if (mat%law == 7) misfit(2) = log(r) - max(x, log(least_state * mat%own(3) &
                 / mat%own(4)))
             scale(2) = 1.0_qp + abs(x) + abs(log(this%r)) + abs(log(this%dt))

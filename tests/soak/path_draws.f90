@@ -45,7 +45,7 @@ contains
         this%extreme = chance(0.05_dp)
         this%half = 0.5_dp * nint(draw(0.5_dp, 7.5_dp))
         half = this%half
-        law = min(7, 1 + int(draw(0.0_dp, 14.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
+        law = min(8, 1 + int(draw(0.0_dp, 16.0_dp)) / 2 + int(draw(0.0_dp, 1.3_dp)))
         mu = draw(0.05_dp, 1.5_dp)
         this%pressure = 10.0_dp * decade(half)
         own = 0.0_dp
@@ -65,7 +65,7 @@ contains
         case (3)
             own(3) = this%time / this%reach * decade(half)
             n = 3
-        case (4)
+        case (4, 8)
             own(1:2) = mu * [0.02_dp, 0.03_dp] * [decade(0.3_dp * half), decade(0.3_dp * half)]
             own(3) = this%reach * decade(half)
             own(4) = own(3) / this%time * decade(half)
@@ -73,6 +73,12 @@ contains
             own(6) = merge(0.0_dp, 1.0_dp, chance(0.5_dp))
             own(7) = own(3) / own(4) * decade(half)
             n = 7
+            if (law == 8) then
+                own(7:8) = own(6:7)
+                own(6) = mu * draw(0.0_dp, 1.0_dp) * decade(0.3_dp * half)
+                if (chance(0.1_dp)) own(6) = 0.0_dp
+                n = 8
+            end if
         case (7)
             call draw_flash_heating(this, mu, own)
             n = 9
@@ -82,7 +88,7 @@ contains
             if (chance(0.1_dp)) own(4) = 0.0_dp
             n = merge(3, 4, law == 5)
         end select
-        this%needs_time = any(law == [3, 4, 7])
+        this%needs_time = any(law == [3, 4, 7, 8])
         call draw_options(this, own, n)
         this%props = [this%props, own(:n)]
         if (this%extreme) call make_extreme(this)
@@ -151,9 +157,11 @@ contains
         big = draw(5.0_dp, 99.0_dp)
         do i = 2, min(size(this%props), 9)
             if (nint(this%props(1)) == 4 .and. i == 9) cycle
+            if (nint(this%props(1)) == 8 .and. i == 10) cycle
             if (this%props(i) > 0.0_dp .and. chance(0.7_dp)) this%props(i) = decade(big)
         end do
-        if (all(nint(this%props(1)) /= [2, 4, 7])) this%props(5) = min(this%props(5), this%props(4))
+        if (all(nint(this%props(1)) /= [2, 4, 7, 8])) this%props(5) = &
+            min(this%props(5), this%props(4))
         if (nint(this%props(1)) == 7) this%props(9) = min(this%props(9), this%props(8))
         if (nint(this%props(1)) == 1) this%props(9) = this%props(4)
         this%half = big

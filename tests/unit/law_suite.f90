@@ -3,8 +3,9 @@
 module law_suite
     use, intrinsic :: iso_fortran_env, only : dp => real64, real128
     use draws, only : draw
-    use friction_mod, only : friction_update, law_coulomb, law_flash_heating, law_rate_state, &
-        law_slip_weakening, law_slip_weakening_healing, law_static_kinetic, law_subloading
+    use friction_mod, only : friction_update, law_coulomb, law_flash_heating, &
+        law_linker_dieterich, law_rate_state, law_slip_weakening, law_slip_weakening_healing, &
+        law_static_kinetic, law_subloading
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
@@ -33,10 +34,11 @@ module law_suite
     real(dp), parameter :: slip_weakening(3) = [mu, 0.2_dp, 1.0e-2_dp]
     real(dp), parameter :: healing(4) = [slip_weakening, 1.0e2_dp]
     real(dp), parameter :: flash_heating(9) = [rate_state, 0.1_dp, 10.0_dp, 8.0_dp, theta_0]
+    real(dp), parameter :: linker_dieterich(6) = [rate_state, 0.05_dp]
     real(dp), parameter :: unused(most_own) = 0.0_dp
     real(dp), parameter :: associated(2) = [0.6_dp, 0.0_dp], radial(2) = [0.6_dp, 1.0_dp]
 
-    type(law_case), parameter :: laws(31) = [ &
+    type(law_case), parameter :: laws(35) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
         [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
@@ -95,7 +97,15 @@ module law_suite
         law_case('flash heating, capped', law_flash_heating, 10, [flash_heating, tau_max, &
         unused(11:)], 'mmddmmd-dd', .true.), &
         law_case('flash heating, associated', law_flash_heating, 12, [flash_heating, 0.0_dp, &
-        associated], 'mmddmmd-d-o-', .true.)]
+        associated], 'mmddmmd-d-o-', .true.), &
+        law_case('Linker-Dieterich, ageing', law_linker_dieterich, 8, [linker_dieterich, 0.0_dp, &
+        theta_0, unused(9:)], 'mmddmm-d', .true.), &
+        law_case('Linker-Dieterich, slip', law_linker_dieterich, 8, [linker_dieterich, 1.0_dp, &
+        theta_0, unused(9:)], 'mmddmm-d', .true.), &
+        law_case('Linker-Dieterich, capped', law_linker_dieterich, 9, [linker_dieterich, 0.0_dp, &
+        theta_0, tau_max, unused(10:)], 'mmddmm-dd', .true.), &
+        law_case('Linker-Dieterich, assoc.', law_linker_dieterich, 11, [linker_dieterich, 1.0_dp, &
+        theta_0, 0.0_dp, associated, unused(12:)], 'mmddmm-d-o-', .true.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point
