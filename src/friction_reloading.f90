@@ -36,13 +36,13 @@ contains
         e = u_et / start
         way = q - reach * e
         length = hypot(way(1), way(2))
-        if (.not. length > 0.0_wp) return
+        straight = (round_off + blur / start) * hypot(q(1), q(2))
+        if (.not. length > straight) return   ! nowhere
         way = way / length
         ahead = e(1) * way(1) + e(2) * way(2)
         if (ahead >= 0.0_wp .or. q(1) * way(1) + q(2) * way(2) <= 0.0_wp) return
         aside = e(1) * q(2) - e(2) * q(1)   ! the part of the way along e has no share in it
         reload%share = 0.0_wp
-        straight = (round_off + blur / start) * hypot(q(1), q(2))
         if (abs(aside) <= straight) return   ! through zero, where |aside| has a kink
         aside = aside / length
         reload%share = abs(aside)
