@@ -66,7 +66,7 @@ contains
             run%props(7), run%props(8))
         finder%drop = smallest_drop
         finder%stiffness = c%stiffness
-        call finder%give_sense(c%drive)
+        call finder%give_sense(1, c%drive)
         allocate (result%onsets(0), events(0))
         y = [0.0_dp, 0.0_dp, 0.0_dp, run%props(9)]
         associate (force => c%area * c%mu_s * c%pressure)
@@ -94,7 +94,7 @@ contains
                 call turning_point(before, now, turn, found)
                 if (found) highest = max(highest, turn%force)
                 highest = max(highest, now%force)
-                call finder%follow(before, now, events)
+                call finder%follow(before, now, .false., events)
                 if (size(events) > 0) then
                     result%onsets = [result%onsets, events%onset]
                     result%peak_force = highest
