@@ -8,7 +8,7 @@ module sweep_journal
     implicit none
     private
 
-    public :: journal, text_line
+    public :: journal, read_rows, text_line
 
     type :: text_line
         character(len=:), allocatable :: text
@@ -32,16 +32,10 @@ contains
         character(len=*), intent(in) :: input   !! what the rows depend on; lines ended by newlines
         type(text_line), allocatable, intent(out) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
-        character(len=:), allocatable :: old_input
         integer :: i
 
-        call read_journal(name, old_input, rows)
-        problem = ''
-        if (len(old_input) > 0 .and. old_input /= input) then
-            problem = name // ' holds results of another input: delete it, or write elsewhere ' &
-                // 'with --output'
-            return
-        end if
+        call read_rows(name, input, rows, problem)
+        if (len(problem) > 0) return
         call self%file%create(name // '.new')
         call write_marked(self%file, input)
         do i = 1, size(rows)
@@ -54,6 +48,21 @@ contains
             problem = 'cannot write ' // name
         end if
     end subroutine open
+
+    !> Reads the rows of a journal that this or another process writes; none where there is no
+    !> journal.
+    subroutine read_rows(name, input, rows, problem)
+        character(len=*), intent(in) :: name
+        character(len=*), intent(in) :: input   !! what the rows depend on; lines ended by newlines
+        type(text_line), allocatable, intent(out) :: rows(:)
+        character(len=:), allocatable, intent(out) :: problem
+        character(len=:), allocatable :: old_input
+
+        call read_journal(name, old_input, rows)
+        problem = ''
+        if (len(old_input) > 0 .and. old_input /= input) problem = name // ' holds results of ' &
+            // 'another input: delete it, or write elsewhere with --output'
+    end subroutine read_rows
 
     !> Both are empty where there is no journal, or none with a whole line.
     subroutine read_journal(name, input, rows)

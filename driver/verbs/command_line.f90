@@ -18,6 +18,7 @@ module command_line
         logical :: plot = .true.
         logical :: quiet = .false.
         integer :: jobs = 0                        !! runs of a sweep at a time; 0: one a core
+        integer :: part = 1, parts = 1             !! of the combinations of a sweep: part of parts
         logical :: resume = .false.
         logical :: verify = .false.
         character(len=:), allocatable :: problem   !! what is wrong with the command line; or empty
@@ -92,6 +93,9 @@ contains
             case ('--jobs')
                 call take_jobs(wanted, argument(i))
                 i = i + 1
+            case ('--part')
+                call take_part(wanted, argument(i))
+                i = i + 1
             case default
                 call take_input(wanted, word)
             end select
@@ -117,15 +121,33 @@ contains
         type(command), intent(inout) :: wanted
         character(len=*), intent(in) :: word
 
-        if (wanted%verb /= 'sweep') then
-            wanted%problem = '--jobs is for sweep'
-        else if (len(word) == 0 .or. len(word) > 4 .or. verify(word, '0123456789') > 0) then
-            wanted%problem = '--jobs needs a whole number from 1 to 9999'
-        else
-            read (word, '(i4)') wanted%jobs
-            if (wanted%jobs == 0) wanted%problem = '--jobs needs a whole number from 1 to 9999'
-        end if
+        wanted%jobs = whole_number(word)
+        if (wanted%jobs == 0) wanted%problem = '--jobs needs a whole number from 1 to 9999'
+        if (wanted%verb /= 'sweep') wanted%problem = '--jobs is for sweep'
     end subroutine take_jobs
+
+    subroutine take_part(wanted, word)
+        type(command), intent(inout) :: wanted
+        character(len=*), intent(in) :: word   !! 'i/n'
+        integer :: slash
+
+        slash = index(word, '/')
+        wanted%part = whole_number(word(:slash - 1))
+        wanted%parts = whole_number(word(slash + 1:))
+        if (slash == 0 .or. wanted%part == 0 .or. wanted%part > wanted%parts) wanted%problem = &
+            '--part needs i/n, whole numbers with 1 <= i <= n <= 9999'
+        if (wanted%verb /= 'sweep') wanted%problem = '--part is for sweep'
+    end subroutine take_part
+
+    !> From 1 to 9999; 0: it is none of these.
+    pure function whole_number(word) result(number)
+        character(len=*), intent(in) :: word
+        integer :: number
+
+        number = 0
+        if (len(word) == 0 .or. len(word) > 4 .or. verify(word, '0123456789') > 0) return
+        read (word, '(i4)') number
+    end function whole_number
 
     function argument(i) result(word)
         integer, intent(in) :: i

@@ -12,7 +12,7 @@ module sweep
     use run_outcome, only : outcome
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
-    use sweep_journal, only : journal, text_line
+    use sweep_journal, only : journal, read_rows, text_line
     use sweep_picture, only : draw_sweep
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
@@ -35,6 +35,7 @@ contains
         type(journal) :: done
         type(text_line), allocatable :: rows(:)
         character(len=:), allocatable :: base, problem
+        logical, allocatable :: mine(:)   !! the combinations of this part of the sweep
         integer :: found, failures
 
         exit_status = exit_bad_input
@@ -43,25 +44,28 @@ contains
         call read_plan(file, plan)
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem // '_sweep'
-        call open_journal(wanted%output, base, plan, done, rows, problem)
+        call open_journal(wanted, base, plan, done, rows, problem)
         if (len(problem) > 0) then
-            write (error_unit, '(a)') problem
+            write (error_unit, '(2a)') 'stickslip: ', problem
             return
         end if
-
-        found = count_rows(rows)
-        call run_all(plan, wanted%jobs, .not. wanted%quiet, done, rows, problem)
-        if (len(problem) == 0) call write_table(base, plan, rows, problem)
-        if (done%failed()) problem = 'cannot write ' // base // '.journal (disk full?)'
+        mine = is_mine(wanted, size(rows))
+        found = count_rows(pack(rows, mine))
+        call run_all(plan, wanted, mine, done, rows, problem)
+        if (len(problem) == 0 .and. wanted%parts == 1) call write_table(base, plan, rows, problem)
+        if (done%failed()) problem = 'cannot write ' // journal_name(wanted, base) &
+            // ' (disk full?)'
         call done%finish()
-        failures = count_rows_with(plan, rows, 'failed,')
-        if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(base, size(rows), &
-            found, failures)
+        failures = count_rows_with(plan, rows, 'failed,', mine)
+        if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(wanted, base, &
+            count(mine), found, failures)
         exit_status = merge(exit_failed, exit_done, failures > 0 .or. len(problem) > 0)
-        if (failures > 0) write (error_unit, '(3a, i0, a, i0, 3a)') 'stickslip: ', wanted%input, &
-            ': ', failures, ' of ', size(rows), ' combinations failed; why is in ', base, '.csv'
-        if (len(problem) == 0 .and. wanted%plot) call draw_sweep(plan, wanted%output, &
-            wanted%stem // '_sweep', count_rows_with(plan, rows, 'ok,stick-slip,'), problem)
+        if (failures > 0) write (error_unit, '(3a, i0, a, i0, 2a)') 'stickslip: ', wanted%input, &
+            ': ', failures, ' of ', count(mine), ' combinations failed; why is in ', &
+            results_name(wanted, base)
+        if (len(problem) == 0 .and. wanted%plot .and. wanted%parts == 1) call draw_sweep(plan, &
+            wanted%output, wanted%stem // '_sweep', &
+            count_rows_with(plan, rows, 'ok,stick-slip,', mine), problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine sweep_input
 
@@ -80,39 +84,102 @@ contains
         end do
     end subroutine read_plan
 
-    !> Finds the combinations whose rows are in the journal of an earlier sweep.
-    subroutine open_journal(directory, base, plan, done, rows, problem)
-        character(len=*), intent(in) :: directory, base
+    !> One of every n combinations, another one each time: the parts of a map take about the same
+    !> time, as many as its columns, too.
+    pure function is_mine(wanted, combinations) result(mine)
+        type(command), intent(in) :: wanted
+        integer, intent(in) :: combinations
+        logical :: mine(combinations)
+        integer :: i
+
+        mine = [(modulo(i + i / wanted%parts, wanted%parts) == wanted%part - 1, &
+            i = 0, combinations - 1)]
+    end function is_mine
+
+    !> Each part of a sweep keeps a journal of its own: files of a cluster cannot be shared.
+    pure function journal_name(wanted, base) result(name)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        character(len=:), allocatable :: name
+
+        name = base // '.journal'
+        if (wanted%parts > 1) name = part_journal(base, wanted%part)
+    end function journal_name
+
+    pure function part_journal(base, part) result(name)
+        character(len=*), intent(in) :: base
+        integer, intent(in) :: part
+        character(len=:), allocatable :: name
+        character(len=12) :: number
+
+        write (number, '(i0)') part
+        name = base // '_part_' // trim(number) // '.journal'
+    end function part_journal
+
+    !> Where the rows are when all is done.
+    pure function results_name(wanted, base) result(name)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        character(len=:), allocatable :: name
+
+        name = base // '.csv'
+        if (wanted%parts > 1) name = journal_name(wanted, base)
+    end function results_name
+
+    !> Finds the combinations whose rows are in the journals of an earlier sweep and of its parts.
+    subroutine open_journal(wanted, base, plan, done, rows, problem)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
         type(sweep_plan), intent(in) :: plan
         type(journal), intent(inout) :: done
         type(text_line), allocatable, intent(out) :: rows(:)  !! one a combination, empty if not run
         character(len=:), allocatable, intent(out) :: problem
         type(text_line), allocatable :: known(:)
-        integer :: i, j
+        character(len=:), allocatable :: input
+        integer :: i
 
         allocate (rows(size(plan%runs)))
-        if (.not. make_directory(directory)) then
-            problem = "stickslip: cannot write to the directory '" // directory // "'"
-            return
-        end if
-        call done%open(base // '.journal', 'stickslip ' // friction_version // new_line('a') &
-            // table_header(plan%axes) // new_line('a') // plan%input, known, problem)
-        if (len(problem) > 0) problem = 'stickslip: ' // problem
         do i = 1, size(rows)
             rows(i)%text = ''
+        end do
+        if (.not. make_directory(wanted%output)) then
+            problem = "cannot write to the directory '" // wanted%output // "'"
+            return
+        end if
+        input = 'stickslip ' // friction_version // new_line('a') // table_header(plan%axes) &
+            // new_line('a') // plan%input
+        call read_rows(base // '.journal', input, known, problem)
+        if (len(problem) > 0) return
+        call take_rows(plan, known, rows)
+        do i = 1, size(rows)   ! parts of a higher number have no combination
+            call read_rows(part_journal(base, i), input, known, problem)
+            if (len(problem) > 0) return
+            call take_rows(plan, known, rows)
+        end do
+        call done%open(journal_name(wanted, base), input, known, problem)
+    end subroutine open_journal
+
+    subroutine take_rows(plan, known, rows)
+        type(sweep_plan), intent(in) :: plan
+        type(text_line), intent(in) :: known(:)
+        type(text_line), intent(inout) :: rows(:)
+        integer :: i, j
+
+        if (size(known) == 0) return
+        do i = 1, size(rows)
             do j = 1, size(known)
                 if (index(known(j)%text, point_text(plan%point(i))) == 1) rows(i) = known(j)
             end do
         end do
-    end subroutine open_journal
+    end subroutine take_rows
 
     !> Runs the combinations that have no row, each in a process of its own. A row does not depend
     !> on what runs beside it. Rows of runs that crashed stay out of the journal: they are tried
     !> again.
-    subroutine run_all(plan, jobs, show_progress, done, rows, problem)
+    subroutine run_all(plan, wanted, mine, done, rows, problem)
         type(sweep_plan), intent(in) :: plan
-        integer, intent(in) :: jobs               !! at a time; 0: as many as there are cores
-        logical, intent(in) :: show_progress
+        type(command), intent(in) :: wanted
+        logical, intent(in) :: mine(:)            !! the combinations to run
         type(journal), intent(inout) :: done
         type(text_line), intent(inout) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
@@ -122,18 +189,18 @@ contains
         integer :: i, next
 
         problem = ''
-        i = jobs
-        if (jobs == 0) i = cores()
+        i = wanted%jobs
+        if (wanted%jobs == 0) i = cores()
         allocate (children(i), combination(i))
         next = 1
-        call bar%begin(show_progress, 0.0_dp)
+        call bar%begin(.not. wanted%quiet, 0.0_dp)
         do
             do i = 1, size(children)
                 if (.not. children(i)%running()) call give_work(i)
             end do
             if (.not. any(children%running())) exit
             call take_result()
-            call bar%show(real(count_rows(rows), dp) / size(rows))
+            call bar%show(real(count_rows(pack(rows, mine)), dp) / count(mine))
         end do
         call bar%clear()
 
@@ -144,7 +211,7 @@ contains
             logical :: inside, started
 
             do while (next <= size(rows))
-                if (len(rows(next)%text) == 0) exit
+                if (mine(next) .and. len(rows(next)%text) == 0) exit
                 next = next + 1
             end do
             if (next > size(rows)) return
@@ -219,27 +286,33 @@ contains
         end do
     end function count_rows
 
-    !> Combinations whose results start with a text.
-    pure function count_rows_with(plan, rows, start) result(n)
+    !> Combinations among `mine` whose results start with a text.
+    pure function count_rows_with(plan, rows, start, mine) result(n)
         type(sweep_plan), intent(in) :: plan
         type(text_line), intent(in) :: rows(:)
         character(len=*), intent(in) :: start
+        logical, intent(in) :: mine(:)
         integer :: n, i
 
         n = 0
         do i = 1, size(rows)
+            if (.not. mine(i)) cycle
             if (index(rows(i)%text, point_text(plan%point(i)) // start) == 1) n = n + 1
         end do
     end function count_rows_with
 
-    subroutine print_summary(base, combinations, found, failures)
+    subroutine print_summary(wanted, base, combinations, found, failures)
+        type(command), intent(in) :: wanted
         character(len=*), intent(in) :: base
         integer, intent(in) :: combinations, found, failures
 
+        if (wanted%parts > 1) write (report, '(2(a, i0))') 'part               ', wanted%part, &
+            ' of ', wanted%parts
         write (report, '(a, 3(i0, a))') 'combinations       ', combinations, ': ', &
             combinations - found, ' run now, ', found, ' taken from the journal'
         write (report, '(a, i0)') 'failed             ', failures
-        write (report, '(3a)') 'table              ', base, '.csv'
+        write (report, '(2a)') merge('rows               ', 'table              ', &
+            wanted%parts > 1), results_name(wanted, base)
     end subroutine print_summary
 
 end module sweep

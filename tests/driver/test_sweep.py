@@ -235,7 +235,9 @@ class BadInput(Sweep):
     def test_bad_usage(self):
         for arguments in (['sweep'], ['sweep', 'a.nml', '--jobs'], ['sweep', 'a.nml', '--jobs', '0'],
                           ['sweep', 'a.nml', '--jobs', 'all'], ['run', 'a.nml', '--jobs', '2'],
-                          ['check', 'a.nml', '--jobs', '2']):
+                          ['check', 'a.nml', '--jobs', '2'], ['run', 'a.nml', '--part', '1/2'],
+                          *(['sweep', 'a.nml', '--part', part]
+                            for part in ('', '1', '0/2', '3/2', '1/', '/2', '1/2/3', '-1/2', '1.0/2', '1/10000'))):
             result = self.run_program(*arguments)
             self.assertEqual(result.returncode, 2, arguments)
             self.assertIn('usage: stickslip', result.stderr)
@@ -327,6 +329,48 @@ class Continuing(Sweep):
             result = self.run_sweep(namelist(TWO_KEYS))
             self.assertEqual((result.returncode, result.stderr), (0, ''), cut)
             self.assertEqual(self.table(), table)
+
+    def test_parts_merge_into_the_table_of_a_sweep_in_one_go(self):
+        self.run_sweep(namelist(TWO_KEYS), '--output', 'whole')
+        for part in ('2/3', '3/3', '1/3'):
+            result = self.run_sweep(namelist(TWO_KEYS), '--part', part)
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertIn('4: 4 run now, 0 taken from the journal', result.stdout)
+            self.assertFalse((self.folder / 'case_out/case_sweep.csv').exists())
+        second = (self.folder / 'case_out/case_sweep_part_2.journal').read_text().splitlines()
+        self.assertEqual(sorted(line.split(',')[:2] for line in second if not line.startswith('#')),
+                         [['0.5', '2'], ['1', '1'], ['2', '4'], ['4', '2']])
+        result = self.run_sweep(namelist(TWO_KEYS))
+        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertIn('12: 0 run now, 12 taken from the journal', result.stdout)
+        self.assertEqual(self.table(), self.table('whole'))
+
+    def test_a_part_that_is_missing_or_torn_is_run_by_whoever_comes_next(self):
+        self.run_sweep(namelist(TWO_KEYS), '--output', 'whole')
+        self.run_sweep(namelist(TWO_KEYS), '--part', '2/2')
+        journal = self.folder / 'case_out/case_sweep_part_2.journal'
+        journal.write_bytes(journal.read_bytes()[:-5])
+        result = self.run_sweep(namelist(TWO_KEYS), '--part', '2/4')
+        self.assertIn('part               2 of 4', result.stdout)
+        self.assertRegex(result.stdout, '3: [23] run now, [01] taken from the journal')
+        result = self.run_sweep(namelist(TWO_KEYS), '--part', '13/13')
+        self.assertIn('0: 0 run now, 0 taken from the journal', result.stdout)
+        self.run_sweep(namelist(TWO_KEYS))
+        self.assertEqual(self.table(), self.table('whole'))
+
+    def test_a_part_of_another_input_is_not_taken(self):
+        self.run_sweep(namelist(TWO_KEYS), '--part', '1/2')
+        result = self.run_sweep(namelist({**TWO_KEYS, ('slider', 'area'): '2'}))
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('case_sweep_part_1.journal holds results of another input', result.stderr)
+
+    def test_a_part_tells_the_failures_among_its_own(self):
+        text = sweep('slider%mass', '1e-3, 0, 2e-3', {('time', 't_end'): '10', ('slider', 'damping'): '0'})
+        first = self.run_sweep(text, '--part', '1/2')
+        self.assertEqual((first.returncode, first.stderr), (0, ''))
+        second = self.run_sweep(text, '--part', '2/2')
+        self.assertEqual(second.returncode, 1)
+        self.assertIn('1 of 2 combinations failed; why is in case_out/case_sweep_part_2.journal', second.stderr)
 
     def test_more_values_add_to_what_is_there(self):
         self.run_sweep(sweep('drive%velocity', '1, 2'))
