@@ -2,8 +2,8 @@
 module friction_rate_state_lanes
     use, intrinsic :: iso_fortran_env, only : wp => real64
     use friction_lane_block, only : c_own, lanes, n_constants, rest_block, slide_block
-    use friction_rate_state_core, only : aged_slope, aged_state, asinh_exp, decayed_part, &
-        mean_decay, slipped_slope, slope_asinh_exp, state_exponent
+    use friction_rate_state_core, only : aged_slope, aged_state, asinh_of, decayed_part, far, &
+        mean_decay, slipped_slope, slope_of, state_exponent
     implicit none
     private
 
@@ -21,6 +21,7 @@ module friction_rate_state_lanes
     !> What the iteration needs of a block, and where it is.
     type :: search
         real(wp) :: u_0(lanes)         !! u of the core without slip and theta's change
+        real(wp) :: per_d_c(lanes), b_over_a(lanes)
         real(wp) :: ln_theta_n(lanes)  !! at the start of the increment
         real(wp) :: z(lanes)           !! ln(slip)
         real(wp) :: ln_theta(lanes)    !! at the end of the increment
@@ -78,7 +79,7 @@ contains
             do i = 1, block%n
                 slip(i) = exp(now%z(i))
             end do
-            call evolve(constants, block, now, slip, ln_theta, by_ln_slip)
+            call evolve(block, now, slip, ln_theta, by_ln_slip)
             call step(constants, slip, ln_theta, by_ln_slip, block, now, still)
             if (still <= 0.0_wp) exit
         end do
@@ -86,6 +87,7 @@ contains
             block%r_end(i) = exp(now%ln_theta(i))
         end do
         do i = 1, block%n
+            block%d_slip(i) = block%d_slip(i) / block%slip(i)
             block%d_pressure(i) = block%mu_end(i)
             block%resistance(i) = block%mu_end(i) * block%pressure(i)
             block%left(i) = block%left(i) + now%several(i)
@@ -116,7 +118,9 @@ contains
             now%high(i) = log(block%trial(i) / block%stiffness(i))
         end do
         do i = 1, block%n
-            x(i) = (block%trial(i) / block%stiffness(i)) / constants(i, c_d_c)
+            now%per_d_c(i) = 1.0_wp / constants(i, c_d_c)
+            now%b_over_a(i) = constants(i, c_b) / constants(i, c_a)
+            x(i) = (block%trial(i) / block%stiffness(i)) * now%per_d_c(i)
             left(i) = exp(-x(i))
         end do
         do i = 1, block%n
@@ -130,7 +134,7 @@ contains
                 left(i), mean_decay(x(i), left(i))))
             fastest = older * aged + (1.0_wp - older) * fastest   ! fall of ln(theta) with slip/d_c
             now%several(i) = 0.0_wp
-            if (max(block%pressure(i) * (constants(i, c_b) * fastest / constants(i, c_d_c) - &
+            if (max(block%pressure(i) * (constants(i, c_b) * fastest * now%per_d_c(i) - &
                 constants(i, c_a) * block%stiffness(i) / block%trial(i)) - block%stiffness(i), &
                 now%low(i) + 1.0_wp - now%high(i)) > 0.0_wp) then
                 now%several(i) = 1.0_wp
@@ -163,15 +167,14 @@ contains
             end do
         end if
         do i = 1, block%n
-            now%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - constants(i, c_b) &
-                / constants(i, c_a) * ln_theta(i)
+            now%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - now%b_over_a(i) &
+                * ln_theta(i)
             now%z(i) = max(min(now%z(i), now%high(i)), now%low(i))
         end do
     end subroutine start
 
     !> ln(theta) after each slip, and how it depends on that.
-    pure subroutine evolve(constants, block, now, slip, ln_theta, by_ln_slip)
-        real(wp), intent(in) :: constants(lanes, n_constants)
+    pure subroutine evolve(block, now, slip, ln_theta, by_ln_slip)
         type(slide_block), intent(in) :: block
         type(search), intent(in) :: now
         real(wp), intent(in) :: slip(lanes)
@@ -181,11 +184,11 @@ contains
         integer :: i
 
         do i = 1, block%n
-            left(i) = exp(-slip(i) / constants(i, c_d_c))
+            left(i) = exp(-slip(i) * now%per_d_c(i))
         end do
         if (now%ages) then
             do i = 1, block%n
-                x = slip(i) / constants(i, c_d_c)
+                x = slip(i) * now%per_d_c(i)
                 mean = mean_decay(x, left(i))
                 theta(i) = aged_state(block%r(i), now%dt, left(i), mean)
                 by_ln_slip(i) = aged_slope(x, block%r(i), now%dt, left(i), mean, theta(i))
@@ -196,10 +199,10 @@ contains
         else
             ln_dt = log(now%dt)
             do i = 1, block%n
-                theta(i) = log(slip(i) / constants(i, c_d_c))
+                theta(i) = log(slip(i) * now%per_d_c(i))
             end do
             do i = 1, block%n
-                x = slip(i) / constants(i, c_d_c)
+                x = slip(i) * now%per_d_c(i)
                 mean = mean_decay(x, left(i))
                 pull = ln_dt - theta(i) - now%ln_theta_n(i)
                 ln_theta(i) = now%ln_theta_n(i) + x * mean * pull
@@ -216,23 +219,23 @@ contains
         type(slide_block), intent(inout) :: block
         type(search), intent(inout) :: now
         real(wp), intent(out) :: still   !! above 0 as long as a point has not settled
-        real(wp), dimension(lanes) :: u, y, slope
+        real(wp), dimension(lanes) :: u, e_u, y
         real(wp) :: by_z, fall, misfit, move, next
         logical :: nearly
         integer :: i
 
         do i = 1, block%n
-            u(i) = u_of(now%u_0(i), now%z(i), constants(i, c_b) / constants(i, c_a), ln_theta(i))
+            u(i) = u_of(now%u_0(i), now%z(i), now%b_over_a(i), ln_theta(i))
         end do
         do i = 1, block%n
-            slope(i) = slope_asinh_exp(u(i))
+            e_u(i) = exp(min(u(i), far))
         end do
         do i = 1, block%n
-            y(i) = asinh_exp(u(i))
+            y(i) = asinh_of(u(i), e_u(i))
         end do
         still = 0.0_wp
         do i = 1, block%n
-            by_z = block%pressure(i) * slope(i) * (constants(i, c_a) + constants(i, c_b) &
+            by_z = block%pressure(i) * slope_of(e_u(i)) * (constants(i, c_a) + constants(i, c_b) &
                 * by_ln_slip(i))
             misfit = block%trial(i) - block%stiffness(i) * slip(i) - constants(i, c_a) * y(i) &
                 * block%pressure(i)
@@ -248,7 +251,7 @@ contains
             if (block%left(i) > 0.0_wp) then
                 block%slip(i) = slip(i)
                 block%mu_end(i) = constants(i, c_a) * y(i)
-                block%d_slip(i) = by_z / slip(i)
+                block%d_slip(i) = by_z   ! by ln(slip), for now
                 now%ln_theta(i) = ln_theta(i)
             end if
             if (block%left(i) > 0.0_wp) then

@@ -15,8 +15,9 @@ module friction_rate_state_core
     implicit none
     private
 
-    public :: fall_of_mean, mean_growth, state_exponent, asinh_exp, slope_asinh_exp, slip_rate, &
-        decayed_part, ageing_rate, slip_law_rate, mean_decay, aged_state, aged_slope, slipped_slope
+    public :: fall_of_mean, mean_growth, state_exponent, asinh_exp, slope_asinh_exp, asinh_of, &
+        slope_of, far, slip_rate, decayed_part, ageing_rate, slip_law_rate, mean_decay, &
+        aged_state, aged_slope, slipped_slope
 
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
     real(wp), parameter :: far = 20.0_wp   !! beyond, asinh(e^u) is u + ln(2) to the last bit
@@ -39,19 +40,33 @@ contains
         real(wp), intent(in) :: u
         real(wp) :: y
 
-        y = asinh(exp(min(u, far)))
-        if (u > far) y = u + ln_2   ! the next term of the series is round-off
+        y = asinh_of(u, exp(min(u, far)))
     end function asinh_exp
 
     !> The derivative of that.
     elemental function slope_asinh_exp(u) result(slope)
         real(wp), intent(in) :: u
         real(wp) :: slope   !! 0 to 1
-        real(wp) :: e
 
-        e = exp(min(u, far))
-        slope = e / sqrt(1.0_wp + e * e)
+        slope = slope_of(exp(min(u, far)))
     end function slope_asinh_exp
+
+    !> The same two where both are needed.
+    elemental function asinh_of(u, e_u) result(y)
+        real(wp), intent(in) :: u
+        real(wp), intent(in) :: e_u   !! e^u, for min(u, far)
+        real(wp) :: y
+
+        y = asinh(e_u)
+        if (u > far) y = u + ln_2   ! the next term of the series is round-off
+    end function asinh_of
+
+    elemental function slope_of(e_u) result(slope)
+        real(wp), intent(in) :: e_u   !! as above
+        real(wp) :: slope
+
+        slope = e_u / sqrt(1.0_wp + e_u * e_u)
+    end function slope_of
 
     !> The law the other way round, v = 2 v0 e^-x sinh(y), for y = mu/a.
     elemental function slip_rate(v0, growth, part) result(v)
