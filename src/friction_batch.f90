@@ -297,18 +297,20 @@ contains
         real(wp) :: statev_(lanes, statev_size)
         real(wp) :: traction_(lanes, this%ndir), tangent_(lanes, this%ndir, this%ndir)
         integer(c_int) :: more(lanes), n_left
-        integer :: count, j, k
+        integer :: count, used, j, k
 
         count = int(last - first) + 1
         du_ = 0.0_wp
         statev_ = 0.0_wp
-        constants_ = constants
+        ! no column that is not in use: copies of signalling numbers stay in vector registers
+        used = c_own + this%plan%source%n_own - 1
+        constants_(:, :used) = constants(:, :used)
         du_(:count, :) = du(first:last, :)
         statev_(:count, :) = statev(first:last, :statev_size)
         do
             do j = 1, lanes
                 if (left(j) == 0 .and. j <= count) cycle   ! else an open point harms nobody
-                constants_(j, :) = this%plan%source%value
+                constants_(j, :used) = this%plan%source%value(:used)
                 du_(j, :) = 0.0_wp
                 statev_(j, :) = 0.0_wp
                 statev_(j, statev_status) = point_open
