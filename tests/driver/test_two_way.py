@@ -193,27 +193,33 @@ class Flutter(Stability):
     def test_laws_with_memory_answer_to_a_varying_pressure(self):
         """As long as the block swings across, the traction is that of the slip rate plus friction times the pressure."""
         tilt, area, velocity = 2.0, 1.3, 0.6
-        for law, damping in itertools.product(('rate_and_state', 'subloading'), (0.0, 0.1)):
-            constants = dict(a='0.05', b='0.09', d_c='0.3', v0='0.5', f0='0.5') if law == 'rate_and_state' else dict(
+        for law, damping in itertools.product(('rate_and_state', 'linker_dieterich', 'subloading'), (0.0, 0.1)):
+            constants = dict(a='0.05', b='0.09', d_c='0.3', v0='0.5', f0='0.5') if law != 'subloading' else dict(
                 mu_s='0.5', mu_k='0.2', kappa='3', xi='2', m='30')
+            if law == 'linker_dieterich':
+                constants['alpha'] = '0.2'
             row = self.told(two_way({'law': f"'{law}'", 'mu': None, 'alpha_t': '50', **constants},
                                     {'tilt_stiffness': repr(tilt), 'area': repr(area), 'damping': repr(damping), 'normal_damping': '0.2'},
                                     drive={'velocity': repr(velocity)}))[0]
             friction, pressure = Fraction(float(row['friction'])), Fraction(float(row['normal_traction']))
             v, s = Fraction(velocity), Fraction(area)
-            if law == 'rate_and_state':
+            pressed = None
+            if law != 'subloading':
                 a, b, d_c = Fraction(0.05), Fraction(0.09), Fraction(0.3)
                 memory = exact(1, v / d_c)
                 a *= Fraction(math.tanh(float(friction) / 0.05))
                 b *= Fraction(math.tanh(float(friction) / 0.05))
                 surface = total(product([a * pressure / v], memory), [-b * pressure / d_c])
+                if law == 'linker_dieterich':   # (ln theta)' has -alpha/(b p) p' besides
+                    pressed = [-Fraction(0.2) * b / Fraction(0.09), Fraction(0)]
             else:
                 memory = exact(1, 3 * v + 2)
                 surface = [-pressure * 3 * (friction - Fraction(0.2))]
+            pressed = total(product([friction], memory), pressed or exact(0))
             closed = total(memory, product(surface, exact(Fraction(1, 50), 0)))
             polynomial = total(
                 product(total(product(exact(1, damping, K), closed), product(surface, exact(s, 0))), exact(1, 0.2, Fraction(K_N) + 11 * s)),
-                product([-Fraction(tilt)], total(product([Fraction(tilt)], closed), product([-s * friction * 11], memory))))
+                product([-Fraction(tilt)], total(product([Fraction(tilt)], closed), product(exact(-s * 11), pressed))))
             if law == 'subloading':   # R stands for itself
                 polynomial = product(polynomial, exact(1, 30 * velocity))
             self.assert_roots(polynomial)
