@@ -58,6 +58,8 @@ module friction_flash_heating_law
 
     !> Least a, by b: the bounds of the search are differences of terms that large.
     real(wp), parameter :: least_direct = 1.0e-9_wp
+    !> Least b, by a and by f0: with less, theta has to leave the range of numbers.
+    real(wp), parameter :: least_evolution = 1.0e-9_wp
 
     !> Steady sliding at a slip rate.
     type :: steady_sliding
@@ -85,6 +87,7 @@ contains
         if (constants(2) < table(2)%lower .or. constants(7) < table(7)%lower) return
         if (constants(6) < table(6)%lower .or. constants(6) > constants(table(6)%not_above)) return
         if (self%a < least_direct * self%b) return
+        if (self%b < least_evolution * max(self%a, self%f0)) return
         call complete_constants(n_needed, table, n, constants, c, status)
         if (status /= friction_ok) return
         self%evolution = shifted
