@@ -3,14 +3,13 @@
 !>
 !> What every update passes through is in this file, so that a compiler can inline it.
 submodule(friction_mod) friction_advance
-    use friction_anisotropy, only : orthotropy
     use friction_axes, only : contact_axes, is_unit_vector, turn_axes
     use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
-        point_open, point_slip, point_stick, point_virgin
+        point_open, point_slip, point_stick, point_virgin, touches
     use friction_continuous, only : contact_rates, point_rates
     use friction_law, only : law
     use friction_law_choice, only : choose_law, first_own_prop, law_storage, prop_alpha_n, &
-        prop_alpha_t
+        prop_alpha_t, surface_options
     implicit none
 
 contains
@@ -121,14 +120,14 @@ contains
     module procedure friction_is_orthotropic
         type(law_storage), target :: storage
         class(law), pointer :: surface
-        type(orthotropy) :: plane
+        type(surface_options) :: options
         integer :: status
 
         orthotropic = .false.
         if (size(props) < first_own_prop) return
         if (.not. all_usable(size(props), props)) return
-        call choose_law(size(props), props, storage, surface, plane, status)
-        if (status == friction_ok) orthotropic = abs(plane%squeeze - 1.0_wp) > 0.0_wp
+        call choose_law(size(props), props, storage, surface, options, status)
+        if (status == friction_ok) orthotropic = abs(options%plane%squeeze - 1.0_wp) > 0.0_wp
     end procedure friction_is_orthotropic
 
     module procedure friction_tangential
@@ -158,7 +157,7 @@ contains
     module procedure friction_rates
         type(law_storage), target :: storage
         class(law), pointer :: surface
-        type(orthotropy) :: plane
+        type(surface_options) :: options
         type(contact_point) :: point
         type(point_rates) :: by_time
         real(wp) :: v(3)
@@ -175,12 +174,13 @@ contains
         if (.not. all_usable(3, v)) return
         status = friction_bad_property
         if (.not. all_usable(size(props), props)) return
-        call choose_law(size(props), props, storage, surface, plane, status)
+        call choose_law(size(props), props, storage, surface, options, status)
         if (status < 0) return
         call unpack_state(surface, n, statev, point, status)
         if (status < 0) return
         call contact_rates(surface, contact_springs(normal=props(prop_alpha_n), &
-            tangential=props(prop_alpha_t)), plane, v, point, by_time, jumps)
+            tangential=props(prop_alpha_t), damping=options%damping), options%plane, v, point, &
+            by_time, jumps)
         status = friction_no_rate
         if (jumps) return
         status = friction_ok
@@ -203,7 +203,7 @@ contains
         integer, intent(out) :: status
         type(law_storage), target :: storage
         class(law), pointer :: chosen, surface
-        type(orthotropy) :: plane
+        type(surface_options) :: options
         type(contact_point) :: old, new
         integer(int64) :: seen
 
@@ -218,7 +218,7 @@ contains
         if (motion%dt < 0.0_wp) return
         status = friction_bad_property
         if (.not. all_usable(sizes%nprops, props)) return
-        call choose_law(sizes%nprops, props, storage, chosen, plane, status)
+        call choose_law(sizes%nprops, props, storage, chosen, options, status)
         if (status < 0) return
         surface => chosen   ! part by part: a copy of the whole would wait as above
         call unpack_state(surface, sizes%ndir, statev, old, status)
@@ -226,10 +226,12 @@ contains
         storage%own%pressure_start = max(0.0_wp, -props(prop_alpha_n) * old%u_n)
         if (.not. motion%dt > 0.0_wp) then
             status = friction_zero_time_increment
-            if (surface%needs_time() .and. sheared(motion, old)) return
+            if (surface%needs_time() .and. sheared(options%cohesion, motion, old)) return
+            if (options%damping > 0.0_wp .and. strained(options%cohesion, motion, old)) return
         end if
         call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
-            tangential=props(prop_alpha_t)), plane, motion, old, new, traction, tangent, status)
+            tangential=props(prop_alpha_t), damping=options%damping), options%plane, motion, old, &
+            new, traction, tangent, status)
         if (status < 0) return
         call pack_state(new, statev)
     end subroutine advance
@@ -282,18 +284,39 @@ contains
     end subroutine pack_state
 
     !> Does the increment load a closed contact tangentially?
-    pure function sheared(motion, old)
+    pure function sheared(cohesion, motion, old)
+        real(wp), intent(in) :: cohesion   !! [F/L^2]
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old
         logical :: sheared
 
-        sheared = sum(abs(old%u_et + motion%du(2:3))) > motion%blur
-        if (motion%pressure_given) then
-            sheared = sheared .and. motion%pressure > 0.0_wp
-        else
-            sheared = sheared .and. old%u_n + motion%du(1) < 0.0_wp
-        end if
+        sheared = sum(abs(old%u_et + motion%du(2:3))) > motion%blur .and. closed_after(cohesion, &
+            motion, old)
     end function sheared
+
+    !> Is a closed contact loaded tangentially on the way?
+    pure function strained(cohesion, motion, old)
+        real(wp), intent(in) :: cohesion   !! [F/L^2]
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        logical :: strained
+
+        strained = sum(abs(old%u_et)) + sum(abs(motion%du(2:3))) > motion%blur &
+            .and. closed_after(cohesion, motion, old)
+    end function strained
+
+    !> Is the contact closed at the end of the increment?
+    pure function closed_after(cohesion, motion, old) result(closed)
+        real(wp), intent(in) :: cohesion   !! [F/L^2]
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        logical :: closed
+        real(wp) :: u_n
+
+        u_n = old%u_n + motion%du(1)
+        if (motion%pressure_given) u_n = -motion%pressure   ! its sign is what counts
+        closed = u_n < 0.0_wp .or. touches(cohesion, motion%blur, u_n)
+    end function closed_after
 
     pure module function are_usable(x) result(usable)
         real(wp), intent(in) :: x(:)

@@ -17,7 +17,8 @@ module friction_anisotropy
     implicit none
     private
 
-    public :: orthotropy, isotropic, read_orthotropy, slide_associated, sliding_way
+    public :: associated_spring, associated_way, ellipse_spring, isotropic, orthotropy, &
+        read_orthotropy, slide_associated, sliding_way
 
     real(wp), parameter, public :: largest_mu_ratio = 1.0e3_wp   !! of the two coefficients [-]
 
@@ -111,8 +112,21 @@ contains
         type(sliding_way), intent(out) :: way
         integer, intent(out) :: status          !! ok, snap back, or no convergence
         type(ellipse_spring) :: spring
-        type(relaxation) :: now
         real(wp) :: x
+
+        spring = associated_spring(alpha_t, squeeze, q, distance)
+        call return_along(surface, spring, pressure, dt, start, slid, x, status)
+        if (status >= 0) way = associated_way(spring, x, slid%resistance)
+    end subroutine slide_associated
+
+    !> The spring of a surface that slides normal to its ellipse.
+    pure function associated_spring(alpha_t, squeeze, q, distance) result(spring)
+        real(wp), intent(in) :: alpha_t         !! tangential stiffness [F/L^3]
+        real(wp), intent(in) :: squeeze         !! [-]
+        real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
+        real(wp), intent(in) :: distance        !! its equivalent length [L]
+        type(ellipse_spring) :: spring
+        type(relaxation) :: now
 
         spring%trial = alpha_t * distance
         spring%x_end = 1.0_wp
@@ -123,19 +137,25 @@ contains
         spring%rates(2) = max(squeeze**2, 1.0_wp)
         now = relaxed(spring, 0.0_wp)
         spring%stiffness = alpha_t * now%reach
-        call return_along(surface, spring, pressure, dt, start, slid, x, status)
-        if (status < 0) return
+    end function associated_spring
 
-        ! The law's traction is exact, the spring's a difference.
+    !> Where it slides at x. The law's traction is exact, the spring's a difference.
+    pure function associated_way(spring, x, resistance) result(way)
+        type(ellipse_spring), intent(in) :: spring
+        real(wp), intent(in) :: x            !! 0 to 1 [-]
+        real(wp), intent(in) :: resistance   !! of the law there [F/L^2]
+        type(sliding_way) :: way
+        type(relaxation) :: now
+
         now = relaxed(spring, x)
-        way%tau = (slid%resistance / now%equivalent) * now%q
+        way%tau = (resistance / now%equivalent) * now%q
         way%along = now%along
         way%answer = now%e * now%along / now%mean
-        way%across = (slid%resistance / now%equivalent) * now%e(1) * now%e(2) / now%mean
+        way%across = (resistance / now%equivalent) * now%e(1) * now%e(2) / now%mean
         way%turn = 0.0_wp
-        way%stiffness = alpha_t * now%reach
+        way%stiffness = spring%alpha_t * now%reach
         way%lever = 1.0_wp / now%reach
-    end subroutine slide_associated
+    end function associated_way
 
     pure subroutine on_an_ellipse(self, x, there)
         class(ellipse_spring), intent(in) :: self

@@ -24,6 +24,7 @@ submodule(friction_mod) friction_batch
         logical :: plain               !! the subloading law without options, in space, the same
                                        !! constants for all: it has a kernel of its own
         real(wp) :: plain_constants(8)              !! for that kernel
+        real(wp) :: viscous            !! stiffness of the damper, eta_t/dt [F/L^3]
         real(wp) :: constants(lanes, n_constants)   !! for all points, if they share them
     end type batch
 
@@ -178,6 +179,7 @@ contains
         this%rows = rows
         this%plain = .false.
         this%plan%kind = lane_none
+        this%viscous = 0.0_wp
         if (sizes%nstatv < statev_size) return
         do row = 1, rows
             statev = 0.0_wp
@@ -189,9 +191,12 @@ contains
         call plan_lanes(sizes%nprops, props(row, :), rows > 1, this%plan)
         if (.not. dtime < most) this%plan%kind = lane_none
         if (this%plan%needs_time .and. .not. dtime > 1.0_wp / most) this%plan%kind = lane_none
+        if (this%plan%damping > 0.0_wp .and. dtime > 0.0_wp) this%viscous = this%plan%damping &
+            / dtime
+        if (.not. this%viscous < most) this%plan%kind = lane_none
         if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%constants)
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
-            .and. this%plan%options == 0
+            .and. this%plan%options == 0 .and. max(this%plan%cohesion, this%viscous) <= 0.0_wp
         associate (value => this%plan%source%value)
             this%plain_constants = [value(:c_mu_0 - 1), value(c_own:c_own + 4), value(c_mu_0)]
         end associate
@@ -280,7 +285,8 @@ contains
         type(block_task) :: task
 
         task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
-            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), this%plan%options, this%dtime)
+            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), this%plan%options, this%dtime, &
+            this%plan%cohesion, this%viscous)
     end function task_of
 
     !> The same through a copy, filled up to a block, without the points that the kernel leaves.
@@ -314,6 +320,7 @@ contains
                 du_(j, :) = 0.0_wp
                 statev_(j, :) = 0.0_wp
                 statev_(j, statev_status) = point_open
+                statev_(j, statev_u_n) = 1.0_wp   ! not one that just touches
                 statev_(j, statev_mu) = this%plan%source%value(c_mu_0)
                 statev_(j, statev_r) = this%plan%source%value(c_r_0)
             end do

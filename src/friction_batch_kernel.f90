@@ -12,17 +12,19 @@ module friction_batch_kernel
     use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &
         c_mu_0, c_own, c_r_0, c_squeeze, lane_ageing, lane_cotangent, lane_coulomb, &
         lane_exact_rate, lane_reciprocal, lane_slip_law, lane_static_kinetic, lane_subloading, &
-        lanes, n_constants, no_cap, rest_block, slide_block, verge, widest, with_cap, &
+        lanes, least_ratio, n_constants, no_cap, rest_block, slide_block, verge, widest, with_cap, &
         with_two_coefficients
     use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
     use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
         state_slip_weakening
     use friction_static_kinetic_lanes, only : rest_static_kinetic, slide_static_kinetic, &
         state_static_kinetic
-    use friction_subloading_exact_lanes, only : rest_subloading_exact, slide_subloading_exact
+    use friction_subloading_exact_lanes, only : exact_coefficients_after, rest_subloading_exact, &
+        slide_subloading_exact
     use friction_subloading_general_lanes, only : slide_subloading_general, &
         state_subloading_general
-    use friction_subloading_lanes, only : rest_subloading, slide_subloading, state_subloading
+    use friction_subloading_lanes, only : c_mu_k, c_mu_s, coefficients_after, rest_subloading, &
+        slide_subloading, state_subloading
     implicit none
     private
 
@@ -71,6 +73,21 @@ contains
         real(wp), intent(inout) :: tangent(task%stride, task%ndir, *)  !! [F/L^3]
         integer(c_int), intent(out) :: left(lanes)   !! 1 for a point that is not taken, else 0
         integer(c_int), intent(out) :: n_left        !! how many; unless 0, nothing is touched
+
+        if (task%viscous > 0.0_wp) then
+            call update_damped(task, constants, du, statev, traction, tangent, left, n_left)
+        else
+            call update_undamped(task, constants, du, statev, traction, tangent, left, n_left)
+        end if
+    end subroutine update_block
+
+    subroutine update_undamped(task, constants, du, statev, traction, tangent, left, n_left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir)
+        real(wp), intent(inout) :: statev(task%stride, 8), traction(task%stride, task%ndir)
+        real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
+        integer(c_int), intent(out) :: left(lanes), n_left
         type(trial_block) :: trial
         type(slide_block) :: slid
         integer :: n_slides
@@ -80,7 +97,73 @@ contains
         call find_slip(task, constants, trial, n_slides, slid, left, n_left)
         if (n_left > 0) return
         call finish(task, constants, du, trial, slid, statev, traction, tangent)
-    end subroutine update_block
+    end subroutine update_undamped
+
+    !> With a damper beside the tangential spring: one spring of a higher stiffness, whose
+    !> displacement at the start is shorter (docs/theory.md, section 16).
+    subroutine update_damped(task, constants, du, statev, traction, tangent, left, n_left)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir)
+        real(wp), intent(inout) :: statev(task%stride, 8), traction(task%stride, task%ndir)
+        real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
+        integer(c_int), intent(out) :: left(lanes), n_left
+        real(wp) :: stiffened(lanes, n_constants), start(lanes, 8), moved(lanes, 3), u_et(lanes, 2)
+        type(block_task) :: own
+        type(trial_block) :: trial
+        type(slide_block) :: slid
+        real(wp) :: share
+        integer :: n_slides, i
+
+        own = task
+        own%stride = lanes
+        stiffened = constants
+        start = statev(:lanes, :)
+        moved(:, :task%ndir) = du(:lanes, :)
+        u_et = start(:, 3:4)
+        if (task%ndir == 2) u_et(:, 2) = 0.0_wp
+        do i = 1, lanes
+            stiffened(i, c_alpha_t) = constants(i, c_alpha_t) + task%viscous
+            share = constants(i, c_alpha_t) / stiffened(i, c_alpha_t)
+            start(i, 3) = start(i, 3) * share
+            start(i, 4) = start(i, 4) * share
+        end do
+        call find_trial(own, stiffened, moved, start, trial, left, n_slides, n_left)
+        if (n_left > 0) return
+        call find_slip(task, stiffened, trial, n_slides, slid, left, n_left)
+        if (n_left > 0) return
+        call finish(task, stiffened, du, trial, slid, statev, traction, tangent)
+        call strain_damper(task, stiffened, du, u_et, statev)
+    end subroutine update_damped
+
+    !> The elastic displacement at which spring and damper carry the traction, and the energy that
+    !> the damper has taken.
+    pure subroutine strain_damper(task, stiffened, du, u_et, statev)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: stiffened(lanes, n_constants)
+        real(wp), intent(in) :: du(task%stride, task%ndir)
+        real(wp), intent(in) :: u_et(lanes, 2)   !! at the start [L]
+        real(wp), intent(inout) :: statev(task%stride, 8)   !! of the stiffened spring, then of both
+        real(wp) :: kept, in_space, u1, u2
+        integer :: i
+
+        in_space = merge(1.0_wp, 0.0_wp, task%ndir == 3)
+        do i = 1, lanes
+            kept = task%viscous / stiffened(i, c_alpha_t)
+            u1 = statev(i, 3) + kept * u_et(i, 1)
+            u2 = statev(i, 4) + kept * u_et(i, 2)
+            if (statev(i, 1) < 1.5_wp) then   ! sticks
+                u1 = u_et(i, 1) + du(i, 2)
+                u2 = u_et(i, 2) + du(i, task%ndir) * in_space
+            end if
+            if (statev(i, 1) < 2.5_wp) then
+                statev(i, 8) = statev(i, 8) + task%viscous * ((u1 - u_et(i, 1))**2 &
+                    + (u2 - u_et(i, 2))**2)
+                statev(i, 3) = u1
+                statev(i, 4) = u2
+            end if
+        end do
+    end subroutine strain_damper
 
     !> The trial state, and the points that the kernel leaves.
     subroutine find_trial(task, constants, du, statev, trial, left, n_slides, n_left)
@@ -104,7 +187,8 @@ contains
         case (lane_exact_rate)
             trial%follows = .true.
             call rest_subloading_exact(constants, task%dt, trial%rest)
-            call leave_reloading(task, constants, statev, trial, valid)
+            trial%start = -1.0_wp
+            if (task%viscous <= 0.0_wp) call leave_reloading(task, constants, statev, trial, valid)
         case (lane_coulomb)
             call rest_coulomb(constants, trial%rest)
         case (lane_static_kinetic)
@@ -114,6 +198,7 @@ contains
         case default
             call rest_slip_weakening(constants, trial%rest)
         end select
+        if (task%cohesion > 0.0_wp) call add_cohesion(task, du, statev, trial%rest, valid)
         n_slides = 0
         n_left = 0
         do i = 1, lanes
@@ -126,6 +211,42 @@ contains
             n_left = n_left + left(i)
         end do
     end subroutine find_trial
+
+    !> Do the lanes of a law carry a share of their strength (`mobilises_cohesion` of the law)?
+    pure function mobilises(task)
+        type(block_task), intent(in) :: task
+        logical :: mobilises
+
+        mobilises = task%kind == lane_subloading .or. task%kind == lane_exact_rate .or. task%kind &
+            == lane_cotangent .or. task%kind == lane_reciprocal
+    end function mobilises
+
+    !> Strengths with cohesion; contacts that just touch are left.
+    pure subroutine add_cohesion(task, du, statev, rest, valid)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: du(task%stride, task%ndir), statev(task%stride, 8)
+        type(rest_block), intent(inout) :: rest
+        real(wp), intent(inout) :: valid(lanes)
+        real(wp) :: full
+        integer :: i
+
+        if (mobilises(task)) then
+            do i = 1, lanes
+                full = rest%mu_rest(i) * rest%pressure(i) + task%cohesion
+                rest%strength(i) = max(rest%r(i), least_ratio) * full
+                rest%r_rest(i) = min(rest%traction(i) / full, 1.0_wp)
+            end do
+        else
+            do i = 1, lanes
+                rest%strength(i) = rest%strength(i) + task%cohesion
+            end do
+        end if
+        do i = 1, lanes
+            if (rest%pressure(i) <= 0.0_wp .and. statev(i, 2) + du(i, 1) <= 0.0_wp) then
+                valid(i) = -1.0_wp
+            end if
+        end do
+    end subroutine add_cohesion
 
     !> Leaves the points whose numbers are not finite, too large, or out of the range of every law.
     !> Numbers that are not finite meet nothing here but sums, which raise no exception.
@@ -445,6 +566,78 @@ contains
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(inout) :: block
 
+        if (.not. task%cohesion > 0.0_wp) then
+            call slide_bare(task, constants, block)
+        else if (mobilises(task)) then
+            call slide_mobilising(task, constants, block)
+        else
+            call slide_above_cohesion(task, constants, block)
+        end if
+    end subroutine slide_by_law
+
+    !> A law to which a cohesion is added: its equilibrium with what the spring pulls above that.
+    subroutine slide_above_cohesion(task, constants, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(slide_block), intent(inout) :: block
+        real(wp) :: trial(lanes)
+        integer :: i
+
+        do i = 1, block%n
+            trial(i) = block%trial(i)
+            block%trial(i) = trial(i) - task%cohesion
+        end do
+        call slide_bare(task, constants, block)
+        do i = 1, block%n
+            block%trial(i) = trial(i)
+            block%resistance(i) = block%resistance(i) + task%cohesion
+        end do
+    end subroutine slide_above_cohesion
+
+    !> The subloading laws, R (mu p + c): the law without cohesion under the pressure p + c, with
+    !> coefficients (mu p + c)/(p + c), which evolve as mu does.
+    subroutine slide_mobilising(task, constants, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(slide_block), intent(inout) :: block
+        real(wp) :: shifted(lanes, n_constants)
+        real(wp), dimension(lanes) :: pressure, mu, mu_rest
+        integer :: i
+
+        shifted = constants
+        do i = 1, block%n
+            pressure(i) = block%pressure(i)
+            mu(i) = block%mu(i)
+            mu_rest(i) = block%mu_rest(i)
+            block%pressure(i) = pressure(i) + task%cohesion
+            block%mu(i) = (mu(i) * pressure(i) + task%cohesion) / block%pressure(i)
+            block%mu_rest(i) = (mu_rest(i) * pressure(i) + task%cohesion) / block%pressure(i)
+            shifted(i, c_mu_s) = (constants(i, c_mu_s) * pressure(i) + task%cohesion) &
+                / block%pressure(i)
+            shifted(i, c_mu_k) = (constants(i, c_mu_k) * pressure(i) + task%cohesion) &
+                / block%pressure(i)
+        end do
+        call slide_bare(task, shifted, block)
+        do i = 1, block%n
+            block%pressure(i) = pressure(i)
+            block%mu(i) = mu(i)
+            block%mu_rest(i) = mu_rest(i)
+        end do
+        if (task%kind == lane_exact_rate) then
+            call exact_coefficients_after(constants, task%dt, block)
+        else
+            call coefficients_after(constants, task%dt, block)
+        end if
+        do i = 1, block%n
+            block%d_pressure(i) = block%r_end(i) * block%mu_end(i)
+        end do
+    end subroutine slide_mobilising
+
+    subroutine slide_bare(task, constants, block)
+        type(block_task), intent(in) :: task
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(slide_block), intent(inout) :: block
+
         select case (task%kind)
         case (lane_subloading)
             call slide_subloading(constants, task%dt, block)
@@ -461,7 +654,7 @@ contains
         case default
             call slide_slip_weakening(constants, block)
         end select
-    end subroutine slide_by_law
+    end subroutine slide_bare
 
     !> Where the cap holds: the law's variables follow the slip.
     subroutine hold_at_cap(task, constants, held, block)

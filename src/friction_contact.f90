@@ -10,7 +10,7 @@ module friction_contact
     implicit none
     private
 
-    public :: contact_motion, contact_point, contact_springs, contact_update
+    public :: contact_motion, contact_point, contact_springs, contact_update, touches
 
     !> A trial sticks if it is above the strength by no more than this share, which is round-off
     !> (docs/theory.md, section 3).
@@ -29,6 +29,7 @@ module friction_contact
     type :: contact_springs
         real(wp) :: normal       !! alpha_n, > 0 [F/L^3]
         real(wp) :: tangential   !! alpha_t, > 0 [F/L^3]
+        real(wp) :: damping      !! of the damper beside the tangential one, >= 0 [F T/L^3]
     end type contact_springs
 
     !> What happens in an increment. A host that controls the pressure itself hands it in.
@@ -69,7 +70,7 @@ contains
         real(wp), intent(inout) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is
                                                    !! given, column 1 is d/d(pressure)
         integer, intent(out) :: status   !! ok, snap back, bad increment, or no convergence
-        real(wp) :: pressure, loaded, q(2), tau(2), by_q(2, 2), by_pressure(2)
+        real(wp) :: pressure, loaded, q(2), tau(2), by_q(2, 2), by_pressure(2), stiffness
         logical :: closes
 
         new%u_n = old%u_n + motion%du(1)
@@ -82,22 +83,30 @@ contains
         if (max(abs(new%u_n), pressure) > largest) return
         status = friction_ok
         if (.not. pressure > least) then
-            call open_contact(surface, motion%dt, old, new)
-            traction = 0.0_wp
-            tangent = 0.0_wp
-            return
+            if (.not. touches(surface%cohesion, motion%blur, new%u_n)) then
+                call open_contact(surface, motion%dt, old, new)
+                traction = 0.0_wp
+                tangent = 0.0_wp
+                return
+            end if
+            pressure = 0.0_wp
         end if
 
         ! Only the part of the increment after touchdown loads the contact.
         closes = old%u_n > 0.0_wp .and. .not. motion%pressure_given
+        if (closes .and. surface%cohesion > 0.0_wp) closes = old%u_n > motion%blur &
+            .and. motion%du(1) < 0.0_wp   ! else it touched from the start
         loaded = 1.0_wp
-        if (closes) loaded = new%u_n / motion%du(1)
+        if (closes) loaded = min(new%u_n, 0.0_wp) / motion%du(1)
+        stiffness = springs%tangential
         q(1) = old%u_et(1) + loaded * motion%du(2)
         q(2) = old%u_et(2) + loaded * motion%du(3)
+        if (springs%damping > 0.0_wp) call stiffen(springs, motion, loaded, old, stiffness, q)
 
-        call tangential_update(surface, springs%tangential, plane, q, pressure, motion, old, new, &
-            tau, by_q, by_pressure, status)
+        call tangential_update(surface, stiffness, plane, q, pressure, motion, old, new, tau, &
+            by_q, by_pressure, status)
         if (status < 0) return
+        if (springs%damping > 0.0_wp) call strain_damper(springs, motion, loaded, old, tau, new)
         if (.not. motion%pressure_given) by_pressure = -springs%normal * by_pressure
         if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure)
         traction(1) = -pressure
@@ -114,6 +123,61 @@ contains
         tangent(2, 3) = by_q(1, 2)
         tangent(3, 3) = by_q(2, 2)
     end subroutine contact_update
+
+    !> Spring and damper side by side, by backward Euler, are one spring of a higher stiffness with
+    !> a shorter displacement (docs/theory.md, section 16).
+    pure subroutine stiffen(springs, motion, loaded, old, stiffness, q)
+        type(contact_springs), intent(in) :: springs
+        type(contact_motion), intent(in) :: motion
+        real(wp), intent(in) :: loaded           !! share of the motion that loads the contact [-]
+        type(contact_point), intent(in) :: old
+        real(wp), intent(out) :: stiffness       !! of both [F/L^3]
+        real(wp), intent(out) :: q(2)            !! of which this is the traction without slip [L]
+
+        stiffness = springs%tangential + damping_per_time(springs%damping, motion%dt)
+        q = (springs%tangential / stiffness) * old%u_et + loaded * motion%du(2:3)
+    end subroutine stiffen
+
+    !> The elastic displacement at which spring and damper carry the traction, and the energy that
+    !> the damper has taken.
+    pure subroutine strain_damper(springs, motion, loaded, old, tau, new)
+        type(contact_springs), intent(in) :: springs
+        type(contact_motion), intent(in) :: motion
+        real(wp), intent(in) :: loaded      !! share of the motion that loads the contact [-]
+        type(contact_point), intent(in) :: old
+        real(wp), intent(in) :: tau(2)      !! [F/L^2]
+        type(contact_point), intent(inout) :: new
+        real(wp) :: viscous, stiffness
+
+        viscous = damping_per_time(springs%damping, motion%dt)
+        stiffness = springs%tangential + viscous
+        new%u_et = old%u_et + loaded * motion%du(2:3)
+        if (new%phase == point_slip) new%u_et = tau / stiffness + (viscous / stiffness) * old%u_et
+        new%dissipation = min(new%dissipation + viscous * sum((new%u_et - old%u_et)**2), largest)
+    end subroutine strain_damper
+
+    !> eta_t/dt, as far as that is a stiffness with a trial traction in range: from there on the
+    !> damper is as good as rigid. An increment without time does not strain it.
+    pure function damping_per_time(damping, dt) result(viscous)
+        real(wp), intent(in) :: damping   !! > 0 [F T/L^3]
+        real(wp), intent(in) :: dt        !! >= 0 [T]
+        real(wp) :: viscous               !! [F/L^3]
+        real(wp), parameter :: rigid = 2.0_wp**166
+
+        viscous = 0.0_wp
+        if (dt > 0.0_wp) viscous = min(damping, rigid * dt) / dt
+    end function damping_per_time
+
+    !> Is a contact without pressure closed all the same? With cohesion it is, where there is no
+    !> gap: it carries that (docs/theory.md, section 15).
+    pure function touches(cohesion, blur, u_n)
+        real(wp), intent(in) :: cohesion   !! [F/L^2]
+        real(wp), intent(in) :: blur       !! round-off of displacements, as in `contact_motion` [L]
+        real(wp), intent(in) :: u_n   !! normal displacement at the end of the increment [L]
+        logical :: touches
+
+        touches = cohesion > 0.0_wp .and. u_n <= blur
+    end function touches
 
     !> Derivatives where the increment closes a gap: its tangential part counts from touchdown on,
     !> and touchdown moves with the normal part.
@@ -153,7 +217,7 @@ contains
         real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         type(orthotropy), intent(in) :: plane
         real(wp), intent(inout) :: q(2)       !! trial elastic tangential displacement [L]
-        real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
+        real(wp), intent(in) :: pressure      !! > 0, or with cohesion 0 [F/L^2]
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
@@ -177,14 +241,15 @@ contains
         start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
             call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
-                [q(1), plane%squeeze * q(2)], strength / alpha_t, pressure, motion%blur_start, &
-                reload)
+                [q(1), plane%squeeze * q(2)], strength / alpha_t, max(old%inner%r, least_ratio) &
+                * new%inner%mu / alpha_t, motion%blur_start, reload)
             reload%by_q(2) = plane%squeeze * reload%by_q(2)
             start%r = reload%share * start%r
             strength = max(reload%share, least_ratio / max(old%inner%r, least_ratio)) * strength
         end if
         limit = strength * (1.0_wp + verge)
-        if (blur > 0.0_wp) limit = limit + alpha_t * blur + strength * (motion%blur / abs(new%u_n))
+        if (blur > 0.0_wp) limit = limit + alpha_t * blur + strength * relative_blur(surface, &
+            motion%blur, new, pressure)
         if (alpha_t * distance <= limit) then
             new%phase = point_stick
             new%u_et(1) = q(1)
@@ -203,6 +268,22 @@ contains
                 reload, old, new, tau, by_q, by_pressure, status)
         end if
     end subroutine tangential_update
+
+    !> Round-off of a displacement that is not known better, as a share of the strength.
+    pure function relative_blur(surface, blur, new, pressure) result(share)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: blur       !! > 0 [L]
+        type(contact_point), intent(in) :: new   !! what `rest` says
+        real(wp), intent(in) :: pressure   !! [F/L^2]
+        real(wp) :: share                  !! [-]
+        real(wp) :: friction
+
+        friction = 1.0_wp
+        if (surface%cohesion > 0.0_wp) friction = new%inner%mu * pressure / (new%inner%mu &
+            * pressure + surface%cohesion)   ! cohesion does not depend on the pressure
+        share = 0.0_wp
+        if (friction > 0.0_wp) share = friction * (blur / abs(new%u_n))
+    end function relative_blur
 
     !> Length of a displacement whose squares may underflow; below the least one it is none.
     pure subroutine measure(q, squeeze, shortest, distance)

@@ -2,10 +2,11 @@
 !> (docs/theory.md, section 10). The update of module `friction_contact` tends to them as its
 !> increment of time tends to zero.
 module friction_continuous
-    use friction_anisotropy, only : orthotropy
+    use friction_anisotropy, only : associated_spring, associated_way, orthotropy, sliding_way
     use friction_contact, only : contact_point, contact_springs
     use friction_kinds, only : wp
-    use friction_law, only : law, law_state, load_rates
+    use friction_law, only : law, law_state, law_traits, load_rates
+    use friction_return_map, only : middle, unload_to, unloaded, unloading
     implicit none
     private
 
@@ -33,6 +34,7 @@ contains
         logical, intent(out) :: jumps   !! slip starts with a jump: it has no rate
         type(load_rates) :: load
         real(wp) :: gradient(2), along(2), v(2)
+        logical :: closed
 
         v = velocity(2:3)
         load%pressure = max(0.0_wp, -springs%normal * point%u_n)
@@ -42,8 +44,15 @@ contains
         rates%u_et = 0.0_wp
         rates%slip = 0.0_wp
         rates%dissipation = 0.0_wp
-        if (load%pressure > 0.0_wp) then
+        closed = load%pressure > 0.0_wp
+        if (.not. closed) closed = surface%cohesion > 0.0_wp .and. point%u_n <= 0.0_wp &
+            .and. .not. velocity(1) > 0.0_wp
+        if (closed) then
             load%pressure_rate = -springs%normal * velocity(1)
+            if (springs%damping > 0.0_wp) then
+                call damped_rates(surface, springs, plane, v, point, load, rates, jumps)
+                return
+            end if
             call slip_directions(plane, point%u_et, v, gradient, along)
             load%traction = springs%tangential * hypot(point%u_et(1), plane%squeeze &
                 * point%u_et(2))
@@ -61,6 +70,125 @@ contains
         end if
         rates%inner = surface%state_rates(point%inner, load, rates%slip)
     end subroutine contact_rates
+
+    !> The same of a closed contact with a damper beside its spring, which tells the traction for
+    !> any slip rate: the balance of section 16 in place of the consistency of section 10. The rates
+    !> of what follows from the traction are those at a constant slip rate.
+    pure subroutine damped_rates(surface, springs, plane, v, point, load, rates, jumps)
+        class(law), intent(in) :: surface
+        type(contact_springs), intent(in) :: springs
+        type(orthotropy), intent(in) :: plane
+        real(wp), intent(in) :: v(2)              !! tangential velocity [L/T]
+        type(contact_point), intent(in) :: point
+        type(load_rates), intent(inout) :: load   !! with the pressure and its rate
+        type(point_rates), intent(inout) :: rates
+        logical, intent(out) :: jumps
+        type(law_traits) :: traits
+        real(wp) :: pull(2), tau(2), gradient(2), along(2)
+
+        pull = springs%tangential * point%u_et + springs%damping * v
+        call balance_damper(surface, springs%damping, plane, pull, load%pressure, point%inner, &
+            tau, along, rates%slip, jumps)
+        if (jumps) return
+        rates%u_et = v - rates%slip * along
+        rates%dissipation = dot_product(tau, along) * rates%slip + springs%damping &
+            * dot_product(rates%u_et, rates%u_et)
+        call slip_directions(plane, tau, v, gradient, along)
+        load%traction = hypot(tau(1), plane%squeeze * tau(2))
+        load%loading = springs%tangential * dot_product(gradient, v)
+        load%stiffness = springs%tangential * dot_product(gradient, along)
+        rates%inner = surface%state_rates(point%inner, load, rates%slip)
+        traits = surface%traits()   ! an R leaves zero faster than at any rate
+        jumps = traits%memory == 1 .and. rates%slip > 0.0_wp .and. .not. point%inner%r > 0.0_wp
+    end subroutine damped_rates
+
+    !> Slip rate and traction at which damper and surface balance: where there are several, the
+    !> least slip rate.
+    pure subroutine balance_damper(surface, damping, plane, pull, pressure, state, tau, along, &
+        rate, fails)
+        class(law), intent(in) :: surface
+        real(wp), intent(in) :: damping       !! > 0 [F T/L^3]
+        type(orthotropy), intent(in) :: plane
+        real(wp), intent(in) :: pull(2)       !! traction without slip [F/L^2]
+        real(wp), intent(in) :: pressure      !! [F/L^2]
+        type(law_state), intent(in) :: state
+        real(wp), intent(out) :: tau(2)       !! traction [F/L^2]
+        real(wp), intent(out) :: along(2)     !! unit vector of the slip
+        real(wp), intent(out) :: rate         !! of slip, >= 0 [L/T]
+        logical, intent(out) :: fails         !! it was not found
+        type(sliding_way) :: way
+        real(wp) :: trial, strength, by_rate, stiffness, x
+        real(wp), parameter :: round_off = 64.0_wp * epsilon(1.0_wp)
+
+        fails = .false.
+        rate = 0.0_wp
+        tau = pull
+        along = 0.0_wp
+        trial = hypot(pull(1), plane%squeeze * pull(2))
+        call surface%resistance_at(state, 0.0_wp, pressure, strength, by_rate)
+        if (trial <= strength * (1.0_wp + round_off)) return
+        if (plane%associated) then
+            associate (spring => associated_spring(damping, plane%squeeze, pull / damping, trial &
+                / damping))
+                call balance(surface, spring, pressure, state, x, rate, strength, fails)
+                way = associated_way(spring, x, strength)
+            end associate
+            tau = way%tau
+            along = way%along
+        else
+            along = pull / hypot(pull(1), pull(2))
+            stiffness = damping * (trial / hypot(pull(1), pull(2)))
+            call balance(surface, unloading(trial, stiffness, trial / stiffness), pressure, state, &
+                x, rate, strength, fails)
+            tau = pull * (strength / trial)
+        end if
+    end subroutine balance_damper
+
+    !> The first balance of the law's resistance at a slip rate with what is left of the pull at
+    !> that: Newton's method, bracketed. While a shear cap holds, the law has no say; from there on
+    !> the laws' resistances meet the pull once (they rise with the slip rate, or fall ever slower).
+    pure subroutine balance(surface, spring, pressure, state, x, rate, resistance, fails)
+        class(law), intent(in) :: surface
+        class(unloading), intent(in) :: spring   !! with slip rates for slips
+        real(wp), intent(in) :: pressure         !! [F/L^2]
+        type(law_state), intent(in) :: state
+        real(wp), intent(out) :: x               !! where it is
+        real(wp), intent(out) :: rate            !! slip rate [L/T]
+        real(wp), intent(out) :: resistance      !! [F/L^2]
+        logical, intent(out) :: fails            !! it was not found
+        integer, parameter :: max_iterations = 200
+        real(wp), parameter :: round_off = epsilon(round_off)
+        type(unloaded) :: there
+        real(wp) :: low, high, misfit, fall, by_rate, next
+        integer :: iteration
+
+        low = 0.0_wp
+        if (spring%trial > surface%tau_max) call unload_to(surface%tau_max, spring, low)
+        high = spring%x_end
+        x = low
+        do iteration = 1, max_iterations
+            call spring%at(x, there)
+            rate = there%slip
+            call surface%resistance_at(state, rate, pressure, resistance, by_rate)
+            misfit = there%traction - resistance
+            fall = (there%stiffness + by_rate) * there%rate
+            fails = .false.
+            if (abs(misfit) <= 4.0_wp * round_off * there%scale) return
+            if (misfit > 0.0_wp) then
+                low = x
+            else
+                if (x <= low) return   ! the cap holds
+                high = x
+            end if
+            if (high - low <= 2.0_wp * round_off * high) return
+            next = middle(low, high)
+            if (fall > 0.0_wp) then
+                if (x + misfit / fall > low .and. x + misfit / fall < high) next = x + misfit / fall
+            end if
+            x = next
+            fails = .true.
+        end do
+    end subroutine balance
 
     !> The gradient of the equivalent traction by the traction, and the unit vector of the slip. A
     !> contact that carries nothing goes where it is pulled.

@@ -2,7 +2,6 @@
 !> (module friction_batch_kernel).
 module friction_lane_constants
     use, intrinsic :: iso_c_binding, only : c_int
-    use friction_anisotropy, only : orthotropy
     use friction_coulomb_law, only : coulomb_law
     use friction_kinds, only : wp
     use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_own, c_r_0, c_squeeze, &
@@ -12,7 +11,7 @@ module friction_lane_constants
         with_two_coefficients
     use friction_law, only : law_state, named_law
     use friction_law_choice, only : choose_law, choose_own_law, first_own_prop, law_storage, &
-        prop_alpha_n, prop_alpha_t, prop_law
+        prop_alpha_n, prop_alpha_t, prop_law, surface_options
     use friction_law, only : law
     use friction_law_constants, only : constant_table, positive
     use friction_rate_state_law, only : rate_state_law, slipping
@@ -31,6 +30,8 @@ module friction_lane_constants
         integer(c_int) :: kind = lane_none   !! see module friction_lane_block
         integer(c_int) :: options = 0   !! sum of those that a point has
         logical :: needs_time = .false. !! no increment without time
+        real(wp) :: cohesion = 0.0_wp   !! of all points that lanes take [F/L^2]
+        real(wp) :: damping = 0.0_wp    !! likewise [F T/L^3]
         type(constants_source) :: source   !! its values are those of the point that the plan was
                                            !! made for
     end type lane_plan
@@ -49,30 +50,36 @@ contains
         type(law_storage), target :: storage
         class(named_law), pointer :: own
         class(law), pointer :: surface
-        type(orthotropy) :: plane
+        type(surface_options) :: options
         type(law_state) :: virgin
         integer :: status, option
 
         nullify (own, surface)
-        call choose_law(nprops, props, storage, surface, plane, status)
-        if (status < 0 .or. plane%associated) return
+        call choose_law(nprops, props, storage, surface, options, status)
+        if (status < 0 .or. options%plane%associated) return
         call choose_own_law(nprops, props, storage, own, option, status)
         call plan_own(own, nprops, props, plan)
         if (plan%kind == lane_none) return
-        plan%needs_time = own%needs_time()
+        plan%needs_time = own%needs_time() .or. options%damping > 0.0_wp
+        plan%cohesion = options%cohesion
+        plan%damping = options%damping
         virgin = own%virgin()
         plan%source%value(c_mu_0) = virgin%mu
         plan%source%value(c_r_0) = virgin%r
         plan%source%value(c_cap) = no_cap
         if (surface%tau_max < most) plan%source%value(c_cap) = surface%tau_max
-        plan%source%value(c_squeeze) = plane%squeeze
+        plan%source%value(c_squeeze) = options%plane%squeeze
         if (surface%tau_max < most .or. (varied .and. option <= nprops)) plan%options = with_cap
-        if (abs(plane%squeeze - 1.0_wp) > 0.0_wp .or. (varied .and. option + 1 <= nprops)) then
+        if (abs(options%plane%squeeze - 1.0_wp) > 0.0_wp .or. (varied .and. option + 1 &
+            <= nprops)) then
             plan%options = plan%options + with_two_coefficients
         end if
         if (option <= nprops) plan%source%place(c_cap) = option
         if (option + 1 <= nprops) plan%source%place(c_squeeze) = option + 1
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
+        if (option + 3 <= nprops) call must_stay(option + 3, props(option + 3), plan)
+        if (option + 4 <= nprops) call must_stay(option + 4, props(option + 4), plan)
+        if (.not. ordinary([options%cohesion, options%damping])) plan%kind = lane_none
         if (.not. ordinary(plan%source%value(:c_r_0))) plan%kind = lane_none
         if (.not. ordinary(plan%source%value(c_own:))) plan%kind = lane_none
     end subroutine plan_lanes

@@ -82,6 +82,10 @@ module friction_law
         !> The largest tangential traction that the surface carries (module friction_shear_cap);
         !> huge for none. Whoever makes a law for use sets it. [F/L^2]
         real(wp) :: tau_max
+
+        !> Tangential traction that the surface carries without pressure (module friction_cohesion);
+        !> 0 for none. Whoever makes a law for use sets it. [F/L^2]
+        real(wp) :: cohesion
     contains
         procedure(virgin_interface), deferred :: virgin
         procedure(admits_interface), deferred :: admits
@@ -114,6 +118,7 @@ module friction_law
         procedure(name_interface), nopass, deferred :: name
         procedure(constants_interface), nopass, deferred :: constants
         procedure, nopass :: internal => no_internal_variable
+        procedure, nopass :: mobilises_cohesion => adds_no_cohesion
         procedure(coefficient_interface), deferred :: typical_coefficient
         procedure :: largest_coefficient => typical_is_largest
         procedure :: kinetic_coefficient => typical_is_kinetic
@@ -374,6 +379,14 @@ contains
 
         variable = internal_variable(name='R', unit='-', exists=.false.)
     end function no_internal_variable
+
+    !> Does the law itself add its cohesion to its strength, because it carries a share of that?
+    !> Otherwise module friction_cohesion adds it to the resistance.
+    pure function adds_no_cohesion() result(mobilises)
+        logical :: mobilises
+
+        mobilises = .false.
+    end function adds_no_cohesion
 
     !> The most that friction can be while the surface rests; huge where there is no such bound.
     pure function typical_is_largest(self) result(mu)

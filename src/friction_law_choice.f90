@@ -2,6 +2,7 @@
 !> of where constants stand.
 module friction_law_choice
     use friction_anisotropy, only : isotropic, orthotropy, orthotropy_constants, read_orthotropy
+    use friction_cohesion, only : cohesion_constants, cohesive_law
     use friction_coulomb_law, only : coulomb_law
     use friction_flash_heating_law, only : flash_heating_law
     use friction_kinds, only : wp
@@ -13,14 +14,15 @@ module friction_law_choice
     use friction_slip_weakening_healing_law, only : slip_weakening_healing_law
     use friction_slip_weakening_law, only : slip_weakening_law
     use friction_static_kinetic_law, only : static_kinetic_law
-    use friction_status, only : friction_bad_law, friction_bad_property
+    use friction_status, only : friction_bad_law, friction_bad_property, friction_ok
     use friction_subloading_exact_law, only : subloading_exact_law
     use friction_subloading_general_law, only : subloading_general_law
     use friction_subloading_law, only : scheme_exact_rate, subloading_law, u_logarithm
     implicit none
     private
 
-    public :: choose_law, choose_own_law, find_law, find_rate_law, law_storage, whole_number
+    public :: choose_law, choose_own_law, find_law, find_rate_law, law_storage, options_of, &
+        surface_options, whole_number
 
     !> Laws: values of props(1).
     integer, parameter, public :: law_subloading = 1
@@ -33,8 +35,8 @@ module friction_law_choice
     integer, parameter, public :: law_linker_dieterich = 8
     integer, parameter, public :: law_count = 8   !! they are numbered from 1 to this
 
-    !> Material constants: places in `props`. The law's own ones follow, then the shear cap, then
-    !> those of orthotropic friction.
+    !> Material constants: places in `props`. The law's own ones follow, then those of the options
+    !> (`option_constants`).
     integer, parameter, public :: prop_law = 1, prop_alpha_n = 2, prop_alpha_t = 3
     integer, parameter, public :: first_own_prop = 4
 
@@ -42,6 +44,31 @@ module friction_law_choice
     type(law_constant), parameter, public :: spring_constants(2) = [ &
         law_constant('alpha_n', 'F/L^3', 'normal contact stiffness', lower=positive), &
         law_constant('alpha_t', 'F/L^3', 'tangential contact stiffness', lower=positive)]
+
+    !> Of the damper beside the tangential spring, which comes last.
+    type(law_constant), parameter :: damper_constants(1) = [ &
+        law_constant('eta_t', 'F T/L^3', 'tangential contact damping', lower=0.0_wp, &
+        optional=.true.)]
+
+    !> The options of every law, from the place behind its own constants on.
+    integer, parameter, public :: option_cap = 1
+    integer, parameter :: option_orthotropy = option_cap + size(cap_constants)
+    integer, parameter, public :: option_cohesion = option_orthotropy + size(orthotropy_constants)
+    integer, parameter, public :: option_damping = option_cohesion + size(cohesion_constants)
+    integer, parameter :: option_count = option_damping + size(damper_constants) - 1
+    type(law_constant), parameter, public :: option_constants(option_count) = [cap_constants, &
+        orthotropy_constants, cohesion_constants, damper_constants]
+
+    !> What the options say.
+    type :: surface_options
+        real(wp) :: tau_max        !! shear cap; 0: none [F/L^2]
+        type(orthotropy) :: plane  !! how friction depends on the direction
+        real(wp) :: cohesion       !! [F/L^2]
+        real(wp) :: damping        !! of the damper beside the tangential spring [F T/L^3]
+    end type surface_options
+
+    type(surface_options), parameter :: no_options = surface_options(tau_max=0.0_wp, &
+        plane=isotropic, cohesion=0.0_wp, damping=0.0_wp)
 
     !> Room for a law of whichever kind, of which one is in use.
     type :: law_storage
@@ -56,6 +83,7 @@ module friction_law_choice
         type(slip_weakening_healing_law) :: slip_weakening_healing
         type(flash_heating_law) :: flash_heating
         type(linker_dieterich_law) :: linker_dieterich
+        type(cohesive_law) :: cohesive
         type(capped_law) :: capped
     end type law_storage
 
@@ -95,12 +123,13 @@ contains
     end subroutine find_rate_law
 
     !> The law and its options from the constants.
-    pure subroutine choose_law(nprops, props, storage, surface, plane, status)
+    pure subroutine choose_law(nprops, props, storage, surface, options, status)
         integer, intent(in) :: nprops                        !! size
         real(wp), intent(in) :: props(nprops)                !! finite
         type(law_storage), intent(inout), target :: storage  !! where the law is kept
         class(law), pointer, intent(inout) :: surface        !! out: the law, if the status is ok
-        type(orthotropy), intent(out) :: plane               !! how it depends on the direction
+        type(surface_options), intent(out) :: options        !! of which those of the contact are to
+                                                             !! be heeded by the caller
         integer, intent(out) :: status   !! ok, bad law, bad size, or bad property
         class(named_law), pointer :: own
         integer :: place
@@ -108,20 +137,52 @@ contains
         call choose_own_law(nprops, props, storage, own, place, status)
         if (status < 0) return
         surface => own
-        plane = isotropic
+        options = no_options
         if (nprops < place) return
-        if (props(place) < cap_constants(1)%lower) then
-            status = friction_bad_property
-        else if (props(place) > 0.0_wp) then
-            storage%capped%tau_max = props(place)
-            storage%capped%inner => own
+        call options_of(nprops - place + 1, props(place:), options, status)
+        if (status < 0) return
+        if (options%damping > 0.0_wp) own%follows_path = .false.   ! where it starts is not known
+        if (options%cohesion > 0.0_wp) then
+            own%cohesion = options%cohesion
+            if (.not. own%mobilises_cohesion()) then
+                storage%cohesive%cohesion = options%cohesion
+                storage%cohesive%inner => own
+                storage%cohesive%follows_path = .false.
+                storage%cohesive%tau_max = own%tau_max
+                own%cohesion = 0.0_wp
+                surface => storage%cohesive
+            end if
+        end if
+        if (options%tau_max > 0.0_wp) then
+            storage%capped%tau_max = options%tau_max
+            storage%capped%inner => surface
             storage%capped%follows_path = .false.   ! not proportional to the pressure
+            storage%capped%cohesion = options%cohesion
             surface => storage%capped
         end if
-        place = place + size(cap_constants)
-        if (status < 0 .or. nprops < place) return
-        call read_orthotropy(nprops - place + 1, props(place:), plane, status)
     end subroutine choose_law
+
+    !> Reads the options.
+    pure subroutine options_of(n, constants, options, status)
+        integer, intent(in) :: n                        !! how many are given, 1 or more
+        real(wp), intent(in) :: constants(n)            !! finite
+        type(surface_options), intent(out) :: options   !! if the status is ok
+        integer, intent(out) :: status                  !! ok or bad property
+
+        status = friction_bad_property
+        options%tau_max = constants(option_cap)
+        if (options%tau_max < cap_constants(1)%lower) return
+        options%cohesion = 0.0_wp
+        if (n >= option_cohesion) options%cohesion = constants(option_cohesion)
+        if (options%cohesion < cohesion_constants(1)%lower) return
+        options%damping = 0.0_wp
+        if (n >= option_damping) options%damping = constants(option_damping)
+        if (options%damping < damper_constants(1)%lower) return
+        options%plane = isotropic
+        status = friction_ok
+        if (n >= option_orthotropy) call read_orthotropy(n - option_orthotropy + 1, &
+            constants(option_orthotropy:), options%plane, status)
+    end subroutine options_of
 
     !> The law as it is without options.
     pure subroutine choose_own_law(nprops, props, storage, own, place, status)
@@ -145,6 +206,7 @@ contains
         place = first_own_prop + n_own
         own%follows_path = .false.
         own%tau_max = huge(own%tau_max)
+        own%cohesion = 0.0_wp
         if (number == law_subloading) call choose_form(storage, own)
         storage%own => own
     end subroutine choose_own_law

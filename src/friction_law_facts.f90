@@ -19,15 +19,14 @@
 !>     friction_healing_rate(props, statev)         growth of the coefficient at rest
 !>     friction_coefficient_change(traits, ...)     what a changed state means to friction later
 module friction_law_facts
-    use friction_anisotropy, only : orthotropy_constants
     use friction_kinds, only : largest, wp
     use friction_law, only : internal_variable, law_state, law_traits, named_law
     use friction_law_choice, only : choose_own_law, find_law, first_own_prop, law_count, &
-        law_storage, prop_alpha_n, prop_alpha_t, prop_law, spring_constants, whole_number
+        law_storage, option_constants, options_of, prop_alpha_n, prop_alpha_t, prop_law, &
+        spring_constants, surface_options, whole_number
     use friction_law_constants, only : constant_table, default_value, law_constant, name_length
     use friction_law_texts, only : broken_rule, is_blank, put, put_word, rule_text, same_text, &
         text_length, text_line, word_of
-    use friction_shear_cap, only : cap_constants
     use friction_status, only : friction_bad_law, friction_bad_property, friction_bad_size, &
         friction_ok
     implicit none
@@ -46,6 +45,8 @@ module friction_law_facts
         real(wp) :: alpha_n = 0.0_wp             !! normal contact stiffness [F/L^3]
         real(wp) :: alpha_t = 0.0_wp             !! tangential contact stiffness [F/L^3]
         real(wp) :: shear_cap = huge(1.0_wp)     !! largest tangential traction; huge: none [F/L^2]
+        real(wp) :: cohesion = 0.0_wp            !! tangential traction that is carried without
+                                                 !! pressure [F/L^2]
         real(wp) :: typical_coefficient = 0.0_wp !! that stands for the strength of the contact: the
                                                  !! static one, or that of steady sliding at the
                                                  !! reference rate [-]
@@ -59,7 +60,8 @@ module friction_law_facts
                                                  !! depend on it then [T/L]
         real(wp) :: virgin_mu = 0.0_wp           !! statev(5) of a virgin point [-]
         real(wp) :: virgin_internal = 0.0_wp     !! statev(6) of a virgin point
-        logical :: needs_time = .false.          !! friction depends on the slip rate: an increment
+        real(wp) :: damping = 0.0_wp             !! tangential contact damping [F T/L^3]
+        logical :: needs_time = .false.          !! the traction depends on a rate: an increment
                                                  !! that shears a closed contact needs dtime > 0
         logical :: is_orthotropic = .false.      !! it depends on the direction of sliding
         integer :: order = 1                     !! of accuracy, in the length of an increment
@@ -117,8 +119,7 @@ contains
         call append(table, spring_constants)
         own = found%constants()
         call append(table, own%of(:own%n))
-        call append(table, cap_constants)
-        call append(table, orthotropy_constants)
+        call append(table, option_constants)
     end function friction_constants
 
     !> Adds constants whose references to each other count from their own first one.
@@ -255,6 +256,7 @@ contains
         type(law_storage), target :: storage
         class(named_law), pointer :: own
         type(law_state) :: virgin
+        type(surface_options) :: options
         integer :: place, status
         character(len=text_length) :: text
 
@@ -266,10 +268,12 @@ contains
         known%alpha_n = props(prop_alpha_n)
         known%alpha_t = props(prop_alpha_t)
         if (size(props) >= place) then
-            if (props(place) > 0.0_wp) known%shear_cap = props(place)
+            call options_of(size(props) - place + 1, props(place:), options, status)
+            if (options%tau_max > 0.0_wp) known%shear_cap = options%tau_max
+            known%is_orthotropic = abs(options%plane%squeeze - 1.0_wp) > 0.0_wp
+            known%cohesion = options%cohesion
+            known%damping = options%damping
         end if
-        if (size(props) > place) known%is_orthotropic = props(place + 1) > 0.0_wp &
-            .and. abs(props(place + 1) - 1.0_wp) > 0.0_wp
         known%typical_coefficient = own%typical_coefficient()
         known%largest_coefficient = own%largest_coefficient()
         known%kinetic_coefficient = own%kinetic_coefficient()
@@ -277,10 +281,11 @@ contains
         virgin = own%virgin()
         known%virgin_mu = virgin%mu
         known%virgin_internal = virgin%r
-        known%needs_time = own%needs_time()
+        known%needs_time = own%needs_time() .or. known%damping > 0.0_wp
         known%order = own%order()
         known%traits = own%traits()
         if (known%shear_cap < huge(1.0_wp)) known%order = 1   ! dissipation is booked in first order
+        if (known%damping > 0.0_wp) known%order = 1   ! the damper by backward Euler
     end function friction_facts
 
     !> How fast the friction coefficient in the state of a point grows while the surface rests.

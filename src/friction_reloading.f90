@@ -19,12 +19,12 @@ contains
     !> Where traction and strength both change linearly, their ratio moves along a straight line,
     !> from the unit vector `e` (the traction starts on its surface) to q/reach; its least
     !> magnitude is its distance from zero.
-    pure subroutine find_reloading(u_et, q, reach, pressure, blur, reload)
+    pure subroutine find_reloading(u_et, q, reach, by_pressure, blur, reload)
         real(wp), intent(in) :: u_et(2)    !! elastic tangential displacement at the start [L]
         real(wp), intent(in) :: q(2)       !! the same at the end, without slip [L]
         real(wp), intent(in) :: reach      !! the elastic displacement that the strength at the end
-                                           !! allows, proportional to the pressure [L]
-        real(wp), intent(in) :: pressure   !! at the end, > 0 [F/L^2]
+                                           !! allows [L]
+        real(wp), intent(in) :: by_pressure   !! d(reach)/d(pressure) [L^3/F]
         real(wp), intent(in) :: blur       !! round-off of `u_et`, if that has lost its own [L]
         type(reloading), intent(out) :: reload
         real(wp), parameter :: round_off = 8.0_wp * epsilon(round_off)
@@ -48,7 +48,7 @@ contains
         reload%share = abs(aside)
         ahead = ahead / length
         reload%by_q = sign(ahead, -aside) * [-way(2), way(1)]
-        reload%by_pressure = reload%share * ahead * (reach / pressure)
+        reload%by_pressure = reload%share * ahead * by_pressure
     end subroutine find_reloading
 
 end module friction_reloading

@@ -20,7 +20,7 @@ module friction_return_map
     implicit none
     private
 
-    public :: return_along, return_map, unloading, unloaded
+    public :: middle, return_along, return_map, unload_to, unloading, unloaded
 
     !> A point of the curve along which the spring unloads while the surface slides.
     type :: unloaded
@@ -102,7 +102,7 @@ contains
 
         there%x = (spring%trial - surface%tau_max) / spring%stiffness
         call slide_to(surface, spring, this, there)
-        holds = .not. there%g > 0.0_wp
+        holds = there%law%resistance >= surface%tau_max   ! sharper than by what the spring has left
     end function cap_holds
 
     !> The same along any unloading curve, by the search alone.
@@ -124,6 +124,7 @@ contains
         here%x = 0.0_wp
         if (spring%trial > surface%tau_max) call unload_to(surface%tau_max, spring, here%x)
         call slide_to(surface, spring, this, here)
+        if (here%x > 0.0_wp) here%g = surface%tau_max - here%law%resistance
         part%last = here
         if (here%g > 0.0_wp) then
             call next_root(surface, spring, this, here, part, status)
@@ -295,6 +296,7 @@ contains
         status = friction_no_convergence
     end subroutine pin_down
 
+    !> Halves a bracket: by its exponents where its ends are of different size.
     pure function middle(low, high) result(x)
         real(wp), intent(in) :: low, high   !! 0 <= low < high
         real(wp) :: x

@@ -7,8 +7,8 @@
 submodule(friction_mod) friction_slip_rate
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : lanes
-    use friction_law_choice, only : find_rate_law, first_own_prop, law_storage, prop_law, &
-        whole_number
+    use friction_law_choice, only : find_rate_law, first_own_prop, law_storage, option_cap, &
+        option_cohesion, options_of, prop_law, surface_options, whole_number
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
     use friction_rate_state_law, only : ageing, n_constants, n_needed, rate_state_law, shifted, &
@@ -20,7 +20,9 @@ submodule(friction_mod) friction_slip_rate
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
     integer, parameter :: least_props = first_own_prop + own_constants - 1
     integer, parameter :: prop_evolution = least_props + 1          !! may be left out
-    integer, parameter :: prop_cap = first_own_prop + n_constants   !! likewise
+    integer, parameter :: first_option = first_own_prop + n_constants
+    integer, parameter :: prop_cap = first_option - 1 + option_cap             !! likewise
+    integer, parameter :: prop_cohesion = first_option - 1 + option_cohesion   !! likewise
     real(wp), parameter :: standstill = -700.0_wp      !! ln of what counts as no slip rate
     real(wp), parameter :: ln_most_rate = 300.0_wp     !! ln of the largest slip rate told
     real(wp), parameter :: least_scale = 1.0e-200_wp   !! of a p, so that quotients are in range
@@ -149,8 +151,8 @@ contains
     end subroutine copy_column
 
     !> Rates of the points that the kernel takes: those of rate-and-state friction that evolve as
-    !> the first one does, without a shear cap. The last block is filled up with copies of its first
-    !> point.
+    !> the first one does, without shear cap and cohesion. The last block is filled up with copies
+    !> of its first point.
     subroutine try_kernel(count, damping, n, tau, pressure, theta, nprops, props, rates, left)
         integer, intent(in) :: count                 !! points of the block
         real(wp), intent(in) :: damping
@@ -194,6 +196,10 @@ contains
         do i = 1, count
             if (differs(props(i, prop_cap), 0.0_wp)) left(i) = 1
         end do
+        if (nprops < prop_cohesion) return
+        do i = 1, count
+            if (differs(props(i, prop_cohesion), 0.0_wp)) left(i) = 1
+        end do
     end subroutine try_kernel
 
     !> Compares bits: silent where a comparison with NaN raises an exception.
@@ -211,7 +217,8 @@ contains
         integer, intent(out) :: status
         type(law_storage), target :: storage
         class(rate_state_law), pointer :: surface
-        real(wp) :: cap, ln_v, ln_w, shift, by_ln_v
+        type(surface_options) :: options
+        real(wp) :: ln_v, ln_w, shift, by_ln_v
         integer :: n_own
 
         status = friction_bad_increment
@@ -225,20 +232,24 @@ contains
         if (.not. associated(surface)) return
         call surface%read(size(props) - first_own_prop + 1, props(first_own_prop:), n_own, status)
         if (status < 0) return
-        cap = 0.0_wp
-        if (size(props) >= first_own_prop + n_own) cap = props(first_own_prop + n_own)
-        status = friction_bad_property
-        if (cap < 0.0_wp) return
+        options%tau_max = 0.0_wp
+        options%cohesion = 0.0_wp
+        if (size(props) >= first_own_prop + n_own) call options_of(size(props) - first_own_prop &
+            - n_own + 1, props(first_own_prop + n_own:), options, status)
+        if (status < 0) return
         status = friction_bad_state
         if (.not. are_usable([theta])) return
         if (.not. theta > 0.0_wp) return
 
-        call solve_balance(tau, pressure, damping, surface, theta, ln_v, status)
+        call solve_balance(max(tau - options%cohesion, 0.0_wp), pressure, damping, surface, theta, &
+            ln_v, status)
         if (status < 0) return
-        if (cap > 0.0_wp .and. tau - damping * exp(ln_v) > cap) then
-            ln_v = 2.0_wp * ln_most_rate   ! nothing but damping holds it
-            if (damping > 0.0_wp) ln_v = log(tau - cap) - log(damping)
-        end if
+        associate (cap => options%tau_max)
+            if (cap > 0.0_wp .and. tau - damping * exp(ln_v) > cap) then
+                ln_v = 2.0_wp * ln_most_rate   ! nothing but damping holds it
+                if (damping > 0.0_wp) ln_v = log(tau - cap) - log(damping)
+            end if
+        end associate
         ln_w = ln_v + log(theta) - log(surface%d_c)
         status = friction_no_convergence
         if (max(ln_v, ln_w) > ln_most_rate) return

@@ -1,11 +1,12 @@
 !> A friction law with its options, read once and asked often: for programs that integrate the rates
 !> of a contact themselves (docs/theory.md, section 10).
 module friction_surface
-    use friction_anisotropy, only : orthotropy
+    use friction_cohesion, only : cohesive_law, cohesive_resistance, cohesive_slip_rate, &
+        cohesive_state_rates
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, law_traits, load_rates, onset_drops, onset_gradual, &
         onset_yields
-    use friction_law_choice, only : choose_law, first_own_prop, law_storage
+    use friction_law_choice, only : choose_law, first_own_prop, law_storage, surface_options
     use friction_shear_cap, only : capped_law
     use friction_status, only : friction_bad_size
     implicit none
@@ -16,9 +17,13 @@ module friction_surface
 
     !> Friction along tangential axis 1.
     type :: sliding_surface
-        class(law), allocatable :: law              !! without its shear cap
+        class(law), allocatable :: law              !! without shear cap; without cohesion, unless
+                                                    !! it is mobilised as the law's strength is
         real(wp) :: tau_max = huge(1.0_wp)          !! the cap [F/L^2]
+        real(wp) :: cohesion = 0.0_wp               !! added to what the law resists with [F/L^2]
         type(law_traits) :: traits                  !! what the law remembers
+    contains
+        procedure :: slip_rate, state_rates, resistance_at
     end type sliding_surface
 
 contains
@@ -31,21 +36,62 @@ contains
         type(sliding_surface), intent(out) :: surface   !! if the status is ok
         integer, intent(out) :: status   !! ok, bad size, bad law, or bad property
         type(law_storage), target :: storage
-        class(law), pointer :: chosen
-        type(orthotropy) :: plane
+        class(law), pointer :: chosen, uncapped
+        type(surface_options) :: options
 
         status = friction_bad_size
         if (size(props) < first_own_prop) return
-        call choose_law(size(props), props, storage, chosen, plane, status)
+        call choose_law(size(props), props, storage, chosen, options, status)
         if (status < 0) return
+        uncapped => chosen
         select type (chosen)
         type is (capped_law)
             surface%tau_max = chosen%tau_max
-            allocate (surface%law, source=chosen%inner)
+            uncapped => chosen%inner
+        end select
+        select type (uncapped)
+        type is (cohesive_law)
+            surface%cohesion = uncapped%cohesion
+            allocate (surface%law, source=uncapped%inner)
         class default
-            allocate (surface%law, source=chosen)
+            allocate (surface%law, source=uncapped)
         end select
         surface%traits = surface%law%traits()
     end subroutine read_surface
+
+    !> The law's `slip_rate` with its cohesion, but for the cap.
+    pure subroutine slip_rate(self, state, load, rate, jumps)
+        class(sliding_surface), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load   !! pressure >= 0
+        real(wp), intent(out) :: rate          !! [L/T]
+        logical, intent(out) :: jumps
+
+        call cohesive_slip_rate(self%law, self%cohesion, state, load, rate, jumps)
+    end subroutine slip_rate
+
+    !> The law's `state_rates`, likewise.
+    pure function state_rates(self, state, load, rate) result(rates)
+        class(sliding_surface), intent(in) :: self
+        type(law_state), intent(in) :: state
+        type(load_rates), intent(in) :: load   !! pressure >= 0
+        real(wp), intent(in) :: rate           !! of slip, >= 0 [L/T]
+        type(law_state) :: rates               !! per unit of time
+
+        rates = cohesive_state_rates(self%law, self%cohesion, state, load, rate)
+    end function state_rates
+
+    !> The law's `resistance_at`, likewise.
+    pure subroutine resistance_at(self, state, rate, pressure, resistance, by_rate)
+        class(sliding_surface), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate          !! slip rate, >= 0 [L/T]
+        real(wp), intent(in) :: pressure      !! contact pressure, >= 0 [F/L^2]
+        real(wp), intent(out) :: resistance   !! [F/L^2]
+        real(wp), intent(out) :: by_rate      !! its derivative by the rate [F T/L^3]
+
+        call cohesive_resistance(self%law, self%cohesion, state, rate, pressure, resistance, &
+            by_rate)
+    end subroutine resistance_at
 
 end module friction_surface

@@ -188,7 +188,7 @@ contains
         real(dp) :: rate
         logical :: jumps
 
-        call surface%law%slip_rate(law_state(mu=0.0_dp, r=exp(ln_theta)), load_of(traction, &
+        call surface%slip_rate(law_state(mu=0.0_dp, r=exp(ln_theta)), load_of(traction, &
             pressure), rate, jumps)
         ln_v = log(max(rate, tiny(rate)))
     end function ln_rate
@@ -247,7 +247,7 @@ contains
         do
             ln_theta = 0.5_dp * (low + high)
             if (high - low <= tolerance .or. ln_theta <= low .or. ln_theta >= high) exit
-            change = surface%law%state_rates(law_state(mu=0.0_dp, r=exp(ln_theta)), &
+            change = surface%state_rates(law_state(mu=0.0_dp, r=exp(ln_theta)), &
                 load_of(traction, pressure), rate)
             if (change%r > 0.0_dp) then
                 low = ln_theta

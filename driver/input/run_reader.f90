@@ -4,8 +4,8 @@ module run_reader
     use archive_file, only : mix
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
-    use friction_mod, only : facts => law_facts, friction_facts
-    use law_facts, only : has_r
+    use friction_mod, only : facts => law_facts, friction_facts, onset_gradual
+    use law_facts, only : has_r, typical_strength
     use law_input, only : read_friction, refuse_orthotropy
     use loading_programme, only : programme
     use namelist_input, only : above, any_number, at_least, between, namelist_file
@@ -127,11 +127,9 @@ contains
     subroutine check_scale(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(in) :: run
-        type(facts) :: law
 
         if (.not. run%adaptive .or. size(file%faults) > 0) return
-        law = friction_facts(run%props)
-        if (law%typical_coefficient * run%drive%largest_normal() > 0.0_dp) return
+        if (typical_strength(run%props, run%drive%largest_normal()) > 0.0_dp) return
         call file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
     end subroutine check_scale
 
@@ -235,7 +233,8 @@ contains
             if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
                 call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
             end if
-            if (start%r * start%mu * run%drive%normal_traction(0.0_dp, 1) > law%shear_cap) then
+            if (start%r * (start%mu * run%drive%normal_traction(0.0_dp, 1) + merge(law%cohesion, &
+                0.0_dp, start%has_r)) > law%shear_cap) then
                 call file%reject(group, key, 'makes a friction force above tau_max')
             end if
         end associate
@@ -308,6 +307,8 @@ contains
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
         law = friction_facts(run%props)
+        if (law%damping > 0.0_dp) call file%reject('friction', 'eta_t', &
+            'needs fixed steps (&time dt)')
         run%order = max(1, law%order)
         run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
             file%given(group, 'rho_infinity'), run%across%free()])
@@ -319,6 +320,7 @@ contains
         type(settings), intent(inout) :: run
         character(len=*), parameter :: group = 'friction', key = 'contact'
         character(len=:), allocatable :: contact
+        type(facts) :: law
 
         call file%get_choice(group, key, contact, ['elastic', 'rigid  '], default='elastic')
         run%rigid_contact = contact == 'rigid'
@@ -329,6 +331,9 @@ contains
         if (.not. allocated(run%props)) return
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')
+        law = friction_facts(run%props)
+        if (law%traits%onset == onset_gradual .and. law%cohesion > 0.0_dp) call file%reject(group, &
+            key, 'has no cohesion where the slip rate tells the traction')
     end subroutine read_contact
 
 end module run_reader

@@ -7,7 +7,7 @@ module law_facts
     implicit none
     private
 
-    public :: has_r, internal_variable, typical_coefficient
+    public :: cohesion, has_r, internal_variable, typical_strength
 
 contains
 
@@ -31,15 +31,26 @@ contains
         name = variable%name(:len(name))
     end function internal_variable
 
-    !> The coefficient that stands for the strength of the contact: the static one, or that of
-    !> steady sliding at the reference rate.
-    pure function typical_coefficient(props) result(mu)
+    !> What stands for the strength of the contact under a pressure: static friction, or that of
+    !> steady sliding at the reference rate, and cohesion.
+    pure function typical_strength(props, pressure) result(strength)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: mu                     !! [-]
+        real(dp), intent(in) :: pressure   !! >= 0 [F/L^2]
+        real(dp) :: strength               !! [F/L^2]
         type(facts) :: law
 
         law = friction_facts(props)
-        mu = law%typical_coefficient
-    end function typical_coefficient
+        strength = law%typical_coefficient * pressure + law%cohesion
+    end function typical_strength
+
+    !> Traction that the contact carries without pressure.
+    pure function cohesion(props) result(traction)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp) :: traction               !! [F/L^2]
+        type(facts) :: law
+
+        law = friction_facts(props)
+        traction = law%cohesion
+    end function cohesion
 
 end module law_facts

@@ -2,7 +2,7 @@
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_settings, only : chain
-    use law_facts, only : typical_coefficient
+    use law_facts, only : typical_strength
     use loading_programme, only : programme
     use slider_system, only : initial_values, normal_motion
     use unit_names, only : units
@@ -53,8 +53,8 @@ contains
         class(settings), intent(in) :: self
         real(dp) :: force   !! [F]
 
-        force = self%event_drop * self%area * typical_coefficient(self%props) &
-            * self%drive%largest_normal()
+        force = self%event_drop * self%area * typical_strength(self%props, &
+            self%drive%largest_normal())
     end function event_force
 
     !> 1 or -1: the sense in which the drive moves first; of one that never does, that in which its

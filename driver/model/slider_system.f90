@@ -13,6 +13,7 @@ module slider_system
     use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
         friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
         statev_r, statev_size, statev_u_et, statev_u_n
+    use law_facts, only : cohesion
     implicit none
     private
 
@@ -135,8 +136,10 @@ contains
         state%v = values%velocity
         state%statev(:, statev_mu) = values%mu
         if (values%has_r) state%statev(:, statev_r) = values%r
-        state%friction = system%area * values%r * values%mu * state%normal
+        state%friction = values%mu * state%normal
         if (allocated(system%load)) state%friction = state%friction * system%load
+        if (values%has_r) state%friction = values%r * (state%friction + cohesion(system%props))
+        state%friction = system%area * state%friction
         state%statev(:, statev_u_et) = state%friction / (system%area * system%props(prop_alpha_t))
         state%spring = sum(state%friction) / size(state%friction) &
             + system%damping * values%velocity

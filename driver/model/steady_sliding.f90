@@ -240,7 +240,7 @@ contains
             if (len(problem) > 0) return
             contact%pressure = law%pressure
             contact%state = law%state
-            call this%surface%law%resistance_at(law%state, law%rate, law%pressure, &
+            call this%surface%resistance_at(law%state, law%rate, law%pressure, &
                 contact%traction, by_rate)
             contact%capped = contact%traction >= this%surface%tau_max
             call differentiate(this%bounds, law, contact)
@@ -291,7 +291,7 @@ contains
         real(dp) :: y(values)
         real(dp) :: traction, by_rate, away, stretch
 
-        call self%law%surface%law%resistance_at(self%law%state, self%law%rate, x, traction, by_rate)
+        call self%law%surface%resistance_at(self%law%state, self%law%rate, x, traction, by_rate)
         traction = min(traction, self%law%surface%tau_max)
         associate (this => self%this, across => self%this%across)
             away = (this%normal_at_start - x) / this%props(prop_alpha_n)
@@ -459,8 +459,8 @@ contains
         case default
             call put(state, self%variable, x)
         end select
-        call self%surface%law%resistance_at(state, rate, load%pressure, load%traction, by_rate)
-        rates = self%surface%law%state_rates(state, load, rate)
+        call self%surface%resistance_at(state, rate, load%pressure, load%traction, by_rate)
+        rates = self%surface%state_rates(state, load, rate)
         y(1) = load%traction
         y(2:) = [rates%r, 0.0_dp]
         if (self%surface%traits%memory == 1) y(2:) = [rates%mu, rates%r]

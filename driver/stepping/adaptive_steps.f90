@@ -65,8 +65,8 @@ contains
         self%order = run%order
         self%pressing = run%area * run%drive%largest_normal()
         self%law = friction_facts(run%props)
-        self%tolerated = run%rtol * max(self%law%typical_coefficient * self%pressing, &
-            tiny(1.0_dp) / epsilon(1.0_dp))
+        self%tolerated = run%rtol * max(self%law%typical_coefficient * self%pressing + run%area &
+            * self%law%cohesion, tiny(1.0_dp) / epsilon(1.0_dp))
         self%part = 1.0_dp / (2.0_dp**self%order - 1.0_dp)
         self%middle = start
         self%error = start

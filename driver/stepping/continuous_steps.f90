@@ -12,7 +12,7 @@ module continuous_steps
         friction_update, law_state, load_rates, onset_drops, onset_gradual, onset_yields, &
         prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
         statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
-    use law_facts, only : typical_coefficient
+    use law_facts, only : cohesion, typical_strength
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
@@ -97,7 +97,8 @@ contains
             ! what is left out is an impulse, and of the order of the square
             if (self%implicit) self%open_below = 1.0e-2_dp * sqrt(run%rtol) &
                 * run%drive%largest_normal()
-            force = run%area * typical_coefficient(run%props) * run%drive%largest_normal()
+            if (cohesion(run%props) > 0.0_dp) self%open_below = -1.0_dp   ! closed without pressure
+            force = run%area * typical_strength(run%props, run%drive%largest_normal())
             stiffness = run%stiffness
             if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
             self%natural(extension) = force / stiffness
@@ -105,8 +106,9 @@ contains
             if (run%mass > 0.0_dp) self%natural(velocity) = force / sqrt(stiffness * run%mass)
             self%natural(elastic) = force / (run%area * eq%alpha)
             self%natural(memory) = 1.0_dp
-            if (eq%surface%traits%weight > 0.0_dp) self%natural(memory) = &
-                typical_coefficient(run%props) / eq%surface%traits%weight
+            if (eq%surface%traits%weight * run%drive%largest_normal() > 0.0_dp) &
+                self%natural(memory) = force / (run%area * run%drive%largest_normal() &
+                * eq%surface%traits%weight)
             self%natural(ratio) = 1.0_dp
             if (eq%surface%traits%stiff) self%natural = self%natural * stiff_sizes
             self%weights = 1.0_dp / (self%rtol * self%natural)
@@ -145,7 +147,7 @@ contains
         v = 0.0_dp
         if (.not. self%equations%follows_traction()) return
         associate (eq => self%equations)
-            call eq%surface%law%slip_rate(eq%law_state_of(self%y, pressure), &
+            call eq%surface%slip_rate(eq%law_state_of(self%y, pressure), &
                 load_rates(abs(traction), 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.), v, jumps)
         end associate
         v = sign(v, traction)
@@ -160,7 +162,7 @@ contains
 
         if (.not. self%equations%follows_traction()) return
         associate (eq => self%equations)
-            call eq%surface%law%resistance_at(eq%law_state_of(self%y, pressure), &
+            call eq%surface%resistance_at(eq%law_state_of(self%y, pressure), &
                 abs(self%y(velocity)), pressure, resistance, by_rate)
             if (resistance >= eq%surface%tau_max) eq%phase = phase_capped
             eq%sense = eq%sense_of(self%y(velocity))
@@ -410,10 +412,11 @@ contains
         strength = self%equations%strength(self%y, pressure)
         growth = 0.0_dp
         if (strength < self%equations%surface%tau_max) then
-            healing = self%equations%surface%law%state_rates(self%equations%law_state_of(self%y, &
+            healing = self%equations%surface%state_rates(self%equations%law_state_of(self%y, &
                 pressure), load_rates(strength, 0.0_dp, self%equations%alpha, pressure, &
                 pressure_rate, .false.), 0.0_dp)
-            growth = strength / pressure * pressure_rate + healing%mu * pressure
+            growth = (strength - self%equations%surface%cohesion) / pressure * pressure_rate &
+                + healing%mu * pressure
         end if
         slides = self%equations%alpha * self%equations%sense_of(self%y(elastic)) &
             * self%first(elastic) > growth
@@ -627,10 +630,10 @@ contains
                 eq%sense = eq%sense_of(self%y(elastic))
                 self%y(elastic) = eq%sense * eq%surface%tau_max / eq%alpha
                 if (eq%surface%traits%memory == 1) self%y(ratio) = min(1.0_dp, eq%surface%tau_max &
-                    / (self%y(memory) * pressure))
+                    / (self%y(memory) * pressure + eq%surface%law%cohesion))
             else
-                if (eq%surface%traits%memory == 1) strength = self%y(ratio) * self%y(memory) &
-                    * pressure
+                if (eq%surface%traits%memory == 1) strength = self%y(ratio) * (self%y(memory) &
+                    * pressure + eq%surface%law%cohesion)
                 if (eq%surface%traits%memory == 1 .or. eq%surface%traits%onset &
                     == onset_yields) then
                     self%y(elastic) = sign(min(strength, eq%surface%tau_max) / eq%alpha, eq%sense)
@@ -653,7 +656,7 @@ contains
             self%y(elastic) = eq%sense * strength / eq%alpha
             if (eq%phase == phase_capped) return
             if (eq%surface%traits%onset == onset_drops) then
-                call eq%surface%law%resistance_at(eq%law_state_of(self%y, pressure), max(0.0_dp, &
+                call eq%surface%resistance_at(eq%law_state_of(self%y, pressure), max(0.0_dp, &
                     eq%sense * self%y(velocity)), pressure, after, by_rate)
                 after = min(after, eq%surface%tau_max) / eq%alpha
                 self%y(elastic) = eq%sense * after
@@ -741,7 +744,7 @@ contains
             else if (pressure > 0.0_dp) then
                 strength = abs(eq%traction(t, y))
                 if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
-                new%statev(1, statev_mu) = strength / pressure
+                new%statev(1, statev_mu) = max(0.0_dp, strength - eq%surface%cohesion) / pressure
             end if
             new%statev(1, statev_slip) = y(slip)
             new%statev(1, statev_dissipation) = y(dissipated)

@@ -181,7 +181,7 @@ contains
         load%sliding = self%surface%traits%onset /= onset_gradual
         state = law_state_of(self, y, pressure)
         if (self%phase == phase_slide) then
-            call self%surface%law%slip_rate(state, load, contact%slip, failed)
+            call self%surface%slip_rate(state, load, contact%slip, failed)
         else if (self%phase == phase_capped) then
             contact%slip = load%loading / load%stiffness
         end if
@@ -195,7 +195,7 @@ contains
             state%r = 0.0_dp   ! R' is not needed, and costs a logarithm or two divisions
             load%pressure = 0.0_dp
         end if
-        changes = self%surface%law%state_rates(state, load, contact%slip)
+        changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
 
@@ -227,7 +227,7 @@ contains
         failed = .not. self%mass > 0.0_dp
         if (failed) return
         contact%velocity = y(velocity)
-        call self%surface%law%resistance_at(law_state_of(self, y, pressure), max(0.0_dp, &
+        call self%surface%resistance_at(law_state_of(self, y, pressure), max(0.0_dp, &
             self%sense * y(velocity)), pressure, resistance, by_rate)
         if (self%sense * y(velocity) <= 0.0_dp) by_rate = 0.0_dp
         if (resistance > self%surface%tau_max) then
@@ -235,7 +235,8 @@ contains
             by_rate = 0.0_dp
             contact%elastic = 0.0_dp
         else
-            contact%elastic = self%sense * resistance / pressure * pressure_rate
+            contact%elastic = self%sense * (resistance - self%surface%cohesion) / pressure &
+                * pressure_rate
         end if
         contact%traction = self%sense * resistance
         acceleration = (pull - self%damping * y(velocity) - self%area * contact%traction) &
@@ -269,14 +270,14 @@ contains
                 sense = self%sense_of(contact%velocity)
             end if
             contact%slip = sense * contact%velocity
-            call self%surface%law%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
+            call self%surface%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
                 contact%traction, by_rate)
             contact%traction = sense * min(contact%traction, self%surface%tau_max)
             if (self%phase == phase_capped) contact%traction = sense * self%surface%tau_max
         end if
         if (self%surface%traits%memory == 0) return
         load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, pressure_rate, .false.)
-        call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
+        call take_memory(self, self%surface%state_rates(state, load, contact%slip), state, &
             contact)
     end subroutine rigid_contact
 
@@ -306,14 +307,14 @@ contains
         sense = self%sense_of(contact%traction)
         state = law_state_of(self, y, pressure)
         load = load_rates(abs(contact%traction), 0.0_dp, 1.0_dp, pressure, pressure_rate, .false.)
-        call self%surface%law%slip_rate(state, load, contact%slip, jumps)
+        call self%surface%slip_rate(state, load, contact%slip, jumps)
         contact%velocity = sense * contact%slip
-        call take_memory(self, self%surface%law%state_rates(state, load, contact%slip), state, &
+        call take_memory(self, self%surface%state_rates(state, load, contact%slip), state, &
             contact)
-        call self%surface%law%resistance_at(state, contact%slip, pressure, tau, by_rate)
+        call self%surface%resistance_at(state, contact%slip, pressure, tau, by_rate)
         shifted = y
         shifted(memory) = y(memory) + little
-        call self%surface%law%resistance_at(law_state_of(self, shifted, pressure), contact%slip, &
+        call self%surface%resistance_at(law_state_of(self, shifted, pressure), contact%slip, &
             pressure, other, by_other)
         acceleration = (pull - self%damping * contact%velocity - self%area * contact%traction) &
             / self%mass
@@ -336,15 +337,15 @@ contains
 
         tau = abs(pull) / self%area
         if (self%damping > 0.0_dp) then
-            call self%surface%law%resistance_at(state, abs(pull) / self%damping, pressure, &
+            call self%surface%resistance_at(state, abs(pull) / self%damping, pressure, &
                 resistance, by_rate)
             tau = min(tau, resistance)
         end if
         load = load_rates(tau, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
         do i = 1, most_iterations
-            call self%surface%law%slip_rate(state, load, v, jumps)
+            call self%surface%slip_rate(state, load, v, jumps)
             if (.not. self%damping > 0.0_dp) exit
-            call self%surface%law%resistance_at(state, v, pressure, resistance, by_rate)
+            call self%surface%resistance_at(state, v, pressure, resistance, by_rate)
             misfit = abs(pull) - self%damping * v - self%area * load%traction
             load%traction = load%traction + misfit / (self%area + self%damping / by_rate)
             if (abs(misfit) <= 4.0_dp * epsilon(misfit) * abs(pull)) exit
@@ -367,7 +368,7 @@ contains
             if (self%phase == phase_capped) then
                 state%r = y(ratio)
             else
-                full = y(memory) * pressure
+                full = y(memory) * pressure + self%surface%law%cohesion
                 if (full > 0.0_dp) state%r = min(1.0_dp, self%alpha * abs(y(elastic)) / full)
             end if
         case (2)
@@ -387,7 +388,7 @@ contains
         real(dp) :: traction               !! [F/L^2]
         real(dp) :: by_rate
 
-        call self%surface%law%resistance_at(law_state_of(self, y, pressure), 0.0_dp, pressure, &
+        call self%surface%resistance_at(law_state_of(self, y, pressure), 0.0_dp, pressure, &
             traction, by_rate)
     end function strength
 
@@ -450,15 +451,16 @@ contains
                 if (.not. gradual) then
                     g(2) = just_below * cap - strength(self, y, pressure)
                 else if (self%surface%traits%memory == 1) then
-                    g(2) = just_below * cap - y(ratio) * y(memory) * pressure
+                    g(2) = just_below * cap - y(ratio) * (y(memory) * pressure &
+                        + self%surface%law%cohesion)
                 else if (self%rigid) then
-                    call self%surface%law%resistance_at(law_state_of(self, y, pressure), &
+                    call self%surface%resistance_at(law_state_of(self, y, pressure), &
                         max(0.0_dp, dy(slip)), pressure, own, by_rate)
                     g(1) = -1.0_dp
                     g(2) = just_below * cap - own
                 else
                     load = load_rates(cap, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
-                    call self%surface%law%slip_rate(law_state_of(self, y, pressure), load, own, &
+                    call self%surface%slip_rate(law_state_of(self, y, pressure), load, own, &
                         jumps)
                     g(2) = own - dy(slip)
                 end if

@@ -2,6 +2,7 @@
 module turning_times
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_healing_rate, statev_mu, statev_size, statev_u_et
+    use law_facts, only : cohesion
     use slider_system, only : slider, slider_state
     implicit none
     private
@@ -18,14 +19,17 @@ contains
         integer, intent(in) :: i
         real(dp), intent(in) :: loading   !! growth of the normal traction, part of it [1/T]
         real(dp) :: velocity              !! [L/T]
-        real(dp) :: resting(statev_size)   ! state variables of the block at rest
+        real(dp) :: pressure, resting(statev_size)   ! state variables of the block at rest
 
         velocity = 0.0_dp
+        pressure = state%normal
+        if (allocated(system%load)) pressure = pressure * system%load(i)
         associate (mu => state%statev(i, statev_mu))
             resting = 0.0_dp
             resting(statev_mu) = mu
-            if (mu > 0.0_dp) velocity = state%statev(i, statev_u_et) &
-                * (friction_healing_rate(system%props, resting) / mu + loading)
+            if (mu * pressure > 0.0_dp) velocity = state%statev(i, statev_u_et) &
+                * (friction_healing_rate(system%props, resting) + mu * loading) / (mu &
+                + cohesion(system%props) / pressure)
         end associate
     end function sticking_velocity
 

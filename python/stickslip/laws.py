@@ -3,7 +3,8 @@
 Every law takes the stiffnesses of the contact, ``alpha_n`` and ``alpha_t`` [F/L^3], its own constants, and the
 options of docs/law_options.md: ``tau_max``, a shear cap (0: none) [F/L^2]; ``mu_ratio``, the friction coefficient
 along the second tangential axis over that along the first; ``direction`` of slip there, ``'associated'`` or
-``'radial'``. A constant out of its range is a ValueError in the library's own words.
+``'radial'``; ``cohesion``, a tangential traction without pressure [F/L^2]; ``eta_t``, a damper beside the tangential
+contact spring [F T/L^3]. A constant out of its range is a ValueError in the library's own words.
 """
 from __future__ import annotations
 
@@ -29,6 +30,8 @@ class Law:
     tau_max: float = 0.0
     mu_ratio: float = 1.0
     direction: str = 'associated'
+    cohesion: float = 0.0
+    eta_t: float = 0.0
     props: np.ndarray = dataclasses.field(init=False, repr=False, compare=False)
 
     number: ClassVar[int]

@@ -77,7 +77,7 @@ contains
 
         state = statev
         state(statev_u_n:statev_u_n + 2) = 0.0_wp
-        call host_tangential([0.0_wp, 0.0_wp], 0.0_wp, dt, props, state, tau, by_du, by_p, status)
+        call host_tangential([0.0_wp, 0.0_wp], -1.0_wp, dt, props, state, tau, by_du, by_p, status)
         if (status < 0) return
         statev = state
         statev(statev_u_n:statev_u_n + 2) = 0.0_wp

@@ -102,7 +102,7 @@ contains
         integer :: status
 
         if (.not. abs(statev(statev_status)) > 0.0_wp) return
-        call friction_tangential([0.0_wp, 0.0_wp], 0.0_wp, 0.0_wp, props, statev, tau, by_du, &
+        call friction_tangential([0.0_wp, 0.0_wp], -1.0_wp, 0.0_wp, props, statev, tau, by_du, &
             by_p, status)
     end subroutine forget_elastic
 

@@ -48,6 +48,8 @@ module friction_lane_block
                                        !! points share them
         integer(c_int) :: options      !! sum of those that a point has
         real(c_double) :: dt           !! [T]
+        real(c_double) :: cohesion     !! of all points [F/L^2]
+        real(c_double) :: viscous      !! stiffness of the damper of all points, eta_t/dt [F/L^3]
     end type block_task
 
     !> Where points find their own constants, and the rules of these.

@@ -11,7 +11,7 @@ module friction_subloading_exact_lanes
     implicit none
     private
 
-    public :: rest_subloading_exact, slide_subloading_exact
+    public :: exact_coefficients_after, rest_subloading_exact, slide_subloading_exact
 
     real(wp), parameter :: least = 1.0e-200_wp      !! below every divisor that counts
     real(wp), parameter :: small_step = 1.0e-8_wp   !! the next error is its square
@@ -87,6 +87,20 @@ contains
                 - block%r_end(i) * now%fall(i))
         end do
     end subroutine slide_subloading_exact
+
+    !> Friction coefficients after the slips that were found.
+    pure subroutine exact_coefficients_after(constants, dt, block)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: dt   !! [T]
+        type(slide_block), intent(inout) :: block   !! in: slip, out: mu_end
+        type(search) :: now
+        integer :: i
+
+        call find_coefficient(constants, dt, block, now)
+        do i = 1, block%n
+            block%mu_end(i) = now%mu(i)
+        end do
+    end subroutine exact_coefficients_after
 
     !> mu after the slip, and how fast it falls.
     pure subroutine find_coefficient(constants, dt, block, now)

@@ -9,7 +9,7 @@ module friction_subloading_lanes
     implicit none
     private
 
-    public :: rest_subloading, slide_subloading, state_subloading
+    public :: coefficients_after, rest_subloading, slide_subloading, state_subloading
 
     integer, parameter, public :: c_mu_s = c_own, c_mu_k = c_own + 1, c_kappa = c_own + 2, &
         c_xi = c_own + 3, c_m = c_own + 4
@@ -42,6 +42,22 @@ contains
                 block%mu(i) - constants(i, c_mu_k), block%r(i), 1.0_wp - block%r(i))
         end do
     end subroutine rest_subloading
+
+    !> Friction coefficients after the slips that were found.
+    pure subroutine coefficients_after(constants, dt, block)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: dt   !! [T]
+        type(slide_block), intent(inout) :: block   !! in: slip, out: mu_end
+        real(wp) :: healing
+        integer :: i
+
+        do i = 1, block%n
+            healing = constants(i, c_xi) * dt
+            block%mu_end(i) = coefficient(constants(i, c_mu_s), constants(i, c_mu_k), &
+                reserve(block%mu(i), constants(i, c_mu_s), constants(i, c_mu_k), healing), &
+                1.0_wp / (1.0_wp + healing + constants(i, c_kappa) * block%slip(i)))
+        end do
+    end subroutine coefficients_after
 
     !> Chebyshev's method on all points at once; one that has settled stays where it is while others
     !> go on.

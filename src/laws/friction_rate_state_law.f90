@@ -521,7 +521,7 @@ contains
 
         stiff = max(answer%d_slip, 0.0_wp)
         by_state = answer%d_pressure - answer%state%mu
-        answer%resistance = answer%resistance + misfit * (stiff / (stiffness + stiff))
+        answer%resistance = max(answer%resistance + misfit * (stiff / (stiffness + stiff)), 0.0_wp)
         answer%state%mu = answer%resistance / pressure
         answer%d_pressure = answer%state%mu + by_state
     end subroutine settle

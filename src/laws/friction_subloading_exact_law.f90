@@ -45,8 +45,8 @@ contains
         real(wp) :: rate
 
         rate = 0.0_wp
-        if (start%r > 0.0_wp .and. start%r < 1.0_wp) rate = state%mu * pressure * (log(state%r) &
-            / log(start%r))
+        if (start%r > 0.0_wp .and. start%r < 1.0_wp) rate = (state%mu * pressure &
+            + self%cohesion) * (log(state%r) / log(start%r))
     end function start_rate
 
     pure subroutine rest(self, traction, pressure, dt, old, new, strength)
@@ -58,7 +58,7 @@ contains
         real(wp) :: full, fall
 
         call friction_coefficient(self, 0.0_wp, dt, old, new%mu, fall)
-        full = new%mu * pressure
+        full = new%mu * pressure + self%cohesion
         strength = max(old%r, least_ratio) * full
         new%r = 0.0_wp
         if (full > 0.0_wp) new%r = traction / max(full, traction)
@@ -75,8 +75,8 @@ contains
         call friction_coefficient(self, slip, dt, old, new%mu, fall)
         call similarity_ratio(old%r, self%m * slip, new%r, y)
         d_pressure = new%r * new%mu
-        resistance = d_pressure * pressure
-        d_slip = pressure * (new%mu * self%m * y - new%r * fall)
+        resistance = d_pressure * pressure + new%r * self%cohesion
+        d_slip = (new%mu * pressure + self%cohesion) * self%m * y - pressure * new%r * fall
     end subroutine slide
 
     pure function fall_of_mu(self, slip, dt, old) result(fall)
@@ -101,14 +101,14 @@ contains
         real(wp), parameter :: y_largest = 200.0_wp     ! far from where exp(y) overflows
         real(wp), parameter :: steepest = 10.0_wp       ! for the start, where -ln R has no bound
         real(wp), parameter :: too_large = 2.0_wp**400  ! for its squares
-        real(wp) :: v_n, rate, mu, fall, s, r, y, lag, d, ds, dz
+        real(wp) :: v_n, rate, mu, full, fall, s, r, y, lag, d, ds, dz
         integer :: iteration
 
         solved = .false.
         call friction_coefficient(self, 0.0_wp, dt, old, mu, fall)
         if (stiffness <= pressure * fall) return   ! several equilibria possible
-        if (self%m * (mu * pressure + trial) > too_large &
-            .or. .not. trial > old%r * mu * pressure) return
+        full = mu * pressure + self%cohesion
+        if (self%m * (full + trial) > too_large .or. .not. trial > old%r * full) return
         v_n = 0.0_wp
         rate = self%m * steepest
         if (old%r >= 1.0_wp) then
@@ -118,7 +118,7 @@ contains
             v_n = e1(y)
             rate = self%m * min(y / (1.0_wp - old%r), steepest)
         end if
-        call start(rate, old%r, mu * pressure, trial - old%r * mu * pressure, stiffness, s, y)
+        call start(rate, old%r, full, trial - old%r * full, stiffness, s, y)
         if (.not. s > 0.0_wp) return
 
         do iteration = 1, max_iterations
@@ -127,8 +127,9 @@ contains
             call friction_coefficient(self, s, dt, old, mu, fall)
             lag = 0.0_wp
             if (y > 0.0_wp) lag = e1(y) - (v_n + self%m * s)
-            d = stiffness + pressure * (mu * self%m * y - r * fall)
-            ds = (trial - stiffness * s - pressure * mu * (r - y * lag)) / d
+            full = mu * pressure + self%cohesion
+            d = stiffness + (full * self%m * y - pressure * r * fall)
+            ds = (trial - stiffness * s - full * (r - y * lag)) / d
             dz = 0.0_wp
             if (y > 0.0_wp) dz = (lag - self%m * ds) / r
             solved = self%kappa * abs(ds) <= small_step .and. stiffness * abs(ds) &
@@ -149,8 +150,9 @@ contains
         answer%state%r = exp(-y)
         call friction_coefficient(self, s, dt, old, answer%state%mu, fall)
         answer%d_pressure = answer%state%r * answer%state%mu
-        answer%resistance = answer%d_pressure * pressure
-        answer%d_slip = pressure * (answer%state%mu * self%m * y - answer%state%r * fall)
+        full = answer%state%mu * pressure + self%cohesion
+        answer%resistance = answer%state%r * full
+        answer%d_slip = full * self%m * y - pressure * answer%state%r * fall
         solved = s > 0.0_wp
     end subroutine solve
 

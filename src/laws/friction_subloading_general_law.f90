@@ -41,8 +41,9 @@ contains
         call friction_coefficient(self, slip, dt, old, new%mu, fall)
         call similarity_ratio(self, old%r, slip, new%r, rate)
         d_pressure = new%r * new%mu
-        resistance = d_pressure * pressure
-        d_slip = pressure * (min(new%mu * rate, unbounded) - new%r * fall)
+        resistance = d_pressure * pressure + new%r * self%cohesion
+        d_slip = pressure * (min(new%mu * rate, unbounded) - new%r * fall) + min(self%cohesion &
+            * rate, unbounded)
     end subroutine slide
 
     !> Newton's method in the slip, bracketed, where there can be one equilibrium only.
@@ -62,7 +63,7 @@ contains
         small = 0.1_wp * sqrt(epsilon(small))      ! the next error is about the square of a step
         low = 0.0_wp
         high = trial / stiffness
-        s = start(self%m, old%r, mu * pressure, trial, stiffness)
+        s = start(self%m, old%r, mu * pressure + self%cohesion, trial, stiffness)
         do iteration = 1, max_iterations
             answer%slip = s
             call slide(self, s, pressure, dt, old, answer%state, answer%resistance, &

@@ -1,6 +1,6 @@
 !> Time-dependent elastoplastic friction with a subloading surface (docs/theory.md, section 1):
 !>
-!>     resistance = R mu p
+!>     resistance = R (mu p + cohesion)
 !>     mu_dot = -kappa (mu - mu_k) |v_p| + xi (mu_s - mu)
 !>     R_dot = -m ln(R) |v_p|
 !>
@@ -47,6 +47,7 @@ module friction_subloading_law
         procedure, nopass :: name
         procedure, nopass :: constants
         procedure, nopass :: internal
+        procedure, nopass :: mobilises_cohesion
         procedure :: typical_coefficient
         procedure :: kinetic_coefficient
         procedure :: healing_rate
@@ -141,6 +142,13 @@ contains
         variable = internal_variable(name='R', unit='-', exists=.true.)
     end function internal
 
+    !> As much of it as of the friction, R.
+    pure function mobilises_cohesion() result(mobilises)
+        logical :: mobilises
+
+        mobilises = .true.
+    end function mobilises_cohesion
+
     pure function kinetic_coefficient(self) result(mu)
         class(subloading_law), intent(in) :: self
         real(wp) :: mu
@@ -182,7 +190,7 @@ contains
         real(wp) :: full
 
         new%mu = friction_coefficient(self, 1.0_wp + self%xi * dt, weakening_reserve(self, dt, old))
-        full = new%mu * pressure
+        full = new%mu * pressure + self%cohesion
         strength = max(old%r, least_ratio) * full
         new%r = 0.0_wp
         if (full > 0.0_wp) new%r = traction / max(full, traction)
@@ -201,14 +209,15 @@ contains
         new%mu = friction_coefficient(self, w, c)
         call similarity_ratio(old%r, self%m * slip, new%r, log_r)
         d_pressure = new%r * new%mu
-        resistance = d_pressure * pressure
+        resistance = d_pressure * pressure + new%r * self%cohesion
         d_slip = 0.0_wp
-        if (new%r > 0.0_wp) d_slip = pressure * (new%mu * ratio_rate(self%m, slip, new%r, log_r) &
-            - new%r * (self%kappa / w) * (c / w))
+        if (new%r > 0.0_wp) d_slip = (new%mu * pressure + self%cohesion) * ratio_rate(self%m, &
+            slip, new%r, log_r) - pressure * new%r * (self%kappa / w) * (c / w)
     end subroutine slide
 
-    !> The slope is p (mu dR/ds - R fall), with R rising ever slower and mu falling ever slower: the
-    !> first product only shrinks, and of the second the worst of each factor stands at one end.
+    !> The slope is (mu p + cohesion) dR/ds - p R fall, with R rising ever slower and mu falling
+    !> ever slower: the first product only shrinks, and of the second the worst of each factor
+    !> stands at one end.
     pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
         class(subloading_law), intent(in) :: self
         type(sliding), intent(in) :: first, last
@@ -259,10 +268,10 @@ contains
         w0 = 1.0_wp + self%xi * dt
         iw = 1.0_wp / w0
         if (stiffness * w0 <= pressure * self%kappa * (c * iw)) return   ! several are possible
-        full = (self%mu_k + c * iw) * pressure
+        full = (self%mu_k + c * iw) * pressure + self%cohesion
         excess = trial - old%r * full
         if (self%m * (full + trial) + self%kappa * w0 > too_large .or. .not. excess > 0.0_wp) return
-        call start_near(self, c, iw, excess, stiffness, pressure, old%r, s, r, e, near)
+        call start_near(self, c, iw, excess, full, stiffness, pressure, old%r, s, r, e, near)
         if (.not. near) call start_far(self, excess, full, stiffness, old%r, s, r, e)
         if (.not. r > 0.0_wp) return
 
@@ -278,12 +287,13 @@ contains
             r_rate = -self%m * log_r * r * gain
             misfit = ((r - old%r) + slack + ms * log_r) * r * gain
             ! Newton's step ...
-            d = 1.0_wp / (stiffness + pressure * (r * mu_rate + mu * r_rate))
-            ds = (trial - stiffness * s - pressure * mu * (r - misfit)) * d
+            full = pressure * mu + self%cohesion
+            d = 1.0_wp / (stiffness + (pressure * r * mu_rate + full * r_rate))
+            ds = (trial - stiffness * s - full * (r - misfit)) * d
             dr = r_rate * ds - misfit
             ! ... and its correction by the second derivatives, where that is one.
             bend_r = gain * dr * (self%m * ds - 0.5_wp * ms * dr * ir)
-            bend_s = -pressure * (mu_rate * ds * (dr - self%kappa * iw * r * ds) - mu * bend_r) * d
+            bend_s = (full * bend_r - pressure * mu_rate * ds * (dr - self%kappa * iw * r * ds)) * d
             bend_r = r_rate * bend_s - bend_r
             if (abs(bend_s) <= 0.5_wp * abs(ds) .and. abs(bend_r) <= 0.5_wp * abs(dr)) then
                 ds = ds + bend_s
@@ -310,28 +320,29 @@ contains
         answer%state%mu = min(max(mu, self%mu_k), self%mu_s)
         answer%state%r = min(r, 1.0_wp)
         answer%d_pressure = r * mu
-        answer%resistance = answer%d_pressure * pressure
-        answer%d_slip = -pressure * r * (mu * self%m * log_r / (r + self%m * s) + self%kappa * c &
+        full = pressure * mu + self%cohesion
+        answer%resistance = r * full
+        answer%d_slip = -r * (full * self%m * log_r / (r + self%m * s) + pressure * self%kappa * c &
             * iw**2)
     end subroutine solve
 
     !> A start for little slip: two terms of the expansion of (s, R) in the excess traction.
-    pure subroutine start_near(self, c, iw0, excess, stiffness, pressure, r_n, s, r, e, good)
+    pure subroutine start_near(self, c, iw0, excess, full, stiffness, pressure, r_n, s, r, e, good)
         class(subloading_law), intent(in) :: self
         real(wp), intent(in) :: c, iw0      !! c and 1/w(0) of section 3 [-]
         real(wp), intent(in) :: excess      !! trial traction beyond the strength [F/L^2]
+        real(wp), intent(in) :: full        !! traction of the normal sliding surface [F/L^2]
         real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
         real(wp), intent(in) :: pressure    !! contact pressure [F/L^2]
         real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
         real(wp), intent(out) :: s, r, e    !! slip [L], R and 1 - R
         logical, intent(out) :: good        !! R changes so little that the expansion holds
         real(wp), parameter :: little = 0.2_wp, least_ratio = 1.0e-3_wp
-        real(wp) :: full, fall, rate, d, dr, bend_s, bend_r
+        real(wp) :: fall, rate, d, dr, bend_s, bend_r
 
         s = 0.0_wp
         r = r_n
         e = 1.0_wp - r_n
-        full = (self%mu_k + c * iw0) * pressure
         fall = self%kappa * c * iw0**2 * pressure
         ! too much slip, to judge by `-ln R >= 2 (1 - R)/(1 + R)` and before any logarithm?
         good = r_n > least_ratio .and. self%m * excess * (1.0_wp + r_n) <= little * r_n &
@@ -356,7 +367,7 @@ contains
     pure subroutine start_far(self, excess, full, stiffness, r_n, s, r, e)
         class(subloading_law), intent(in) :: self
         real(wp), intent(in) :: excess       !! trial traction beyond the strength [F/L^2]
-        real(wp), intent(in) :: full         !! traction of the normal sliding surface, mu p [F/L^2]
+        real(wp), intent(in) :: full         !! traction of the normal sliding surface [F/L^2]
         real(wp), intent(in) :: stiffness    !! tangential stiffness [F/L^3]
         real(wp), intent(in) :: r_n          !! R at the start of the increment [-]
         real(wp), intent(out) :: s, r, e     !! slip [L], R and 1 - R
@@ -405,7 +416,7 @@ contains
         end do
     end subroutine similarity_ratio
 
-    !> Consistency: the traction stays on the subloading surface, R mu p.
+    !> Consistency: the traction stays on the subloading surface, R (mu p + cohesion).
     pure subroutine slip_rate(self, state, load, rate, jumps)
         class(subloading_law), intent(in) :: self
         type(law_state), intent(in) :: state
@@ -416,7 +427,7 @@ contains
 
         jumps = .false.
         rate = 0.0_wp
-        full = state%mu * load%pressure
+        full = state%mu * load%pressure + self%cohesion
         if (full > 0.0_wp .and. .not. (state%r > 0.0_wp .and. load%traction > 0.0_wp)) return
         rate = load%loading - state%r * strength_rate(self, state, load)
         if (.not. load%sliding) rate = max(0.0_wp, rate)
@@ -428,7 +439,7 @@ contains
         if (slope > 0.0_wp) rate = rate / slope
     end subroutine slip_rate
 
-    !> While nothing slips R is the traction's share of mu p.
+    !> While nothing slips R is the traction's share of mu p + cohesion.
     pure function state_rates(self, state, load, slip_rate) result(rates)
         class(subloading_law), intent(in) :: self
         type(law_state), intent(in) :: state
@@ -437,7 +448,7 @@ contains
         type(law_state) :: rates
         real(wp) :: full
 
-        full = state%mu * load%pressure
+        full = state%mu * load%pressure + self%cohesion
         rates%mu = self%xi * (self%mu_s - state%mu) - self%kappa * (state%mu - self%mu_k) &
             * slip_rate
         rates%r = 0.0_wp

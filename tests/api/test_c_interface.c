@@ -218,8 +218,8 @@ static void bad_calls_are_codes_and_touch_nothing(void)
 /* The ends of the ranges that are told: those of the stiffnesses are taken, what is outside any is refused. */
 static void ranges_are_those_that_are_checked(void)
 {
-    enum { laws = 8 };
-    static const double valid[laws + 1][15] = {{0},
+    enum { laws = 8, most = 24 };
+    static const double valid[laws + 1][most] = {{0},
                                                {1, 1e3, 8e2, .45, .25, 8, .2, 60, .45, 0, 0, 0, 1, 0},
                                                {2, 1e3, 8e2, .4, 0, 1, 0},
                                                {3, 1e3, 8e2, .45, .25, 1, 0, 1, 0},
@@ -230,7 +230,7 @@ static void ranges_are_those_that_are_checked(void)
                                                {8, 1e3, 8e2, .01, .015, .01, .01, .4, .1, 0, 1, 0, 1, 0}};
     friction_law_facts law;
     friction_constant_facts constant;
-    double props[15];
+    double props[most];
     int number, i;
 
     CHECK(friction_law_count() == laws);
@@ -256,17 +256,17 @@ static void ranges_are_those_that_are_checked(void)
 
 static void laws_tell_their_constants(void)
 {
-    static const char *names[14] = {"law", "alpha_n", "alpha_t", "mu_s", "mu_k", "kappa", "xi", "m", "mu_0", "scheme",
-                                    "u_of_r", "tau_max", "mu_ratio", "direction"};
+    static const char *names[16] = {"law", "alpha_n", "alpha_t", "mu_s", "mu_k", "kappa", "xi", "m", "mu_0", "scheme",
+                                    "u_of_r", "tau_max", "mu_ratio", "direction", "cohesion", "eta_t"};
     friction_law_facts law;
     friction_constant_facts constant;
     double value = 7;
     const double rate_state[8] = {4, 1, 1, .01, .02, 6, 2, .4};
     int i;
 
-    CHECK(friction_get_law(1, &law) == FRICTION_OK && strcmp(law.name, "subloading") == 0 && law.constants == 14);
+    CHECK(friction_get_law(1, &law) == FRICTION_OK && strcmp(law.name, "subloading") == 0 && law.constants == 16);
     CHECK(strcmp(law.internal, "R") == 0 && law.has_internal == 1);
-    for (i = 0; i < 14; i++)
+    for (i = 0; i < 16; i++)
         CHECK(friction_get_constant(1, i, &constant) == FRICTION_OK && strcmp(constant.name, names[i]) == 0);
     CHECK(friction_get_law(2, &law) == FRICTION_OK && law.has_internal == 0 && strcmp(law.internal, "R") == 0);
     CHECK(friction_get_law(4, &law) == FRICTION_OK && strcmp(law.internal, "theta") == 0
@@ -283,13 +283,13 @@ static void laws_tell_their_constants(void)
     CHECK(friction_get_law(0, &law) == FRICTION_BAD_LAW && friction_get_law(friction_law_count() + 1, &law) == FRICTION_BAD_LAW);
     CHECK(friction_get_law(1, NULL) == FRICTION_NULL_POINTER);
     CHECK(friction_get_constant(friction_law_count() + 1, 0, &constant) == FRICTION_BAD_LAW);
-    CHECK(friction_get_constant(1, 14, &constant) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_constant(1, 16, &constant) == FRICTION_BAD_SIZE);
     CHECK(friction_get_constant(1, -1, &constant) == FRICTION_BAD_SIZE);
     CHECK(friction_get_constant(1, 0, NULL) == FRICTION_NULL_POINTER);
     value = 7;
     CHECK(friction_get_default(8, rate_state, 3, &value) == FRICTION_BAD_PROPERTY && value == 7);
     CHECK(friction_get_default(6, rate_state, 9, &value) == FRICTION_BAD_PROPERTY && value == 7);
-    CHECK(friction_get_default(8, rate_state, 13, &value) == FRICTION_BAD_SIZE);
+    CHECK(friction_get_default(8, rate_state, 15, &value) == FRICTION_BAD_SIZE);
     CHECK(friction_get_default(0, rate_state, 9, &value) == FRICTION_BAD_SIZE);
     CHECK(friction_get_default(8, NULL, 9, &value) == FRICTION_NULL_POINTER);
     CHECK(friction_get_default(8, rate_state, 9, NULL) == FRICTION_NULL_POINTER);

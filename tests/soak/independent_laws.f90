@@ -21,13 +21,17 @@ module independent_laws
         real(qp) :: tau_max      !! huge: none
         real(qp) :: rho          !! mu_2/mu_1
         logical :: associated
+        real(qp) :: cohesion, damping
     end type material
 
     !> A closed contact in an increment, its slip prevented.
     type :: load_case
         real(qp) :: p            !! pressure
         real(qp) :: dt
-        real(qp) :: q(2)         !! elastic displacement
+        real(qp) :: q(2)         !! displacement of which spring and damper make the trial traction
+        real(qp) :: moved(2)     !! the elastic displacement, if nothing slips
+        real(qp) :: viscous      !! stiffness of the damper
+        real(qp) :: stiffness    !! of both
         real(qp) :: q_scale      !! of the terms of q
         real(qp) :: mu, r        !! internal variables at the start; for a virgin point its own
         real(qp) :: mu_rest      !! friction coefficient without slip
@@ -92,6 +96,10 @@ contains
             mat%associated = abs(mat%rho - 1.0_qp) > 0.0_qp
         end if
         if (size(props) > cap + 1) mat%associated = mat%associated .and. props(cap + 2) < 0.5_dp
+        mat%cohesion = 0.0_qp
+        if (size(props) > cap + 2) mat%cohesion = props(cap + 3)
+        mat%damping = 0.0_qp
+        if (size(props) > cap + 3) mat%damping = props(cap + 4)
     end subroutine read_material
 
     !> The increment as the contact sees it; `closed` false: no pressure.
@@ -106,12 +114,17 @@ contains
         u_n = real(old(2), qp) + du(1)
         this%p = -mat%alpha_n * u_n
         if (given) this%p = pressure
-        closed = this%p > 0.0_qp
+        closed = this%p > 0.0_qp .or. (mat%cohesion > 0.0_qp .and. .not. this%p < 0.0_qp)
         part = 1.0_qp
         if (old(2) > 0.0_dp .and. closed .and. .not. given) part = u_n / du(1)
         this%dt = dt
-        this%q = real(old(3:4), qp) + part * du(2:3)
-        this%q_scale = norm2(old(3:4)) + part * norm2(du(2:3)) + norm2(this%q)
+        this%moved = real(old(3:4), qp) + part * du(2:3)
+        this%viscous = 0.0_qp
+        if (dt > 0.0_dp) this%viscous = min(mat%damping / dt, 2.0_qp**166)
+        this%stiffness = mat%alpha_t + this%viscous
+        this%q = (mat%alpha_t / this%stiffness) * old(3:4) + part * du(2:3)
+        this%q_scale = norm2(real(old(3:4), qp)) + part * norm2(real(du(2:3), qp)) &
+            + norm2(this%moved)
         this%mu = old(5)
         this%r = old(6)
         if (nint(old(1)) == 0) then
@@ -127,7 +140,8 @@ contains
         if (.not. closed) return
         this%mu_rest = mu_after(mat, this, 0.0_qp)
         this%r_start = this%r
-        if (mat%law == 1 .and. mat%form == 3 .and. mat%tau_max > 1.0e300_qp) this%r_start = &
+        if (mat%law == 1 .and. mat%form == 3 .and. mat%tau_max > 1.0e300_qp .and. .not. &
+            mat%damping > 0.0_qp) this%r_start = &
             this%r * least_share(mat, this, real(old(3:4), qp))
     end subroutine read_increment
 
@@ -145,7 +159,7 @@ contains
         b = [this%q(1), this%q(2) / mat%rho]
         if (.not. norm2(a) > 0.0_qp) return
         a = a / norm2(a)
-        reach = this%r * this%mu_rest * this%p / mat%alpha_t
+        reach = this%r * (this%mu_rest * this%p + mat%cohesion) / mat%alpha_t
         way = b - reach * a
         if (.not. norm2(way) > 0.0_qp) return
         t = -reach * dot_product(a, way) / dot_product(way, way)
@@ -158,17 +172,18 @@ contains
         type(load_case), intent(in) :: this
         real(qp) :: strength
 
-        strength = this%mu_rest * this%p
+        strength = this%mu_rest * this%p + mat%cohesion
         if (mat%law == 1) strength = max(this%r_start, 1.0e-100_qp) * strength
     end function rested_strength
 
-    !> Does the law need time for this increment?
-    function is_sheared(mat, this) result(sheared)
+    !> Does law or damper need time for this increment?
+    function is_sheared(mat, u_et, du) result(sheared)
         type(material), intent(in) :: mat
-        type(load_case), intent(in) :: this
+        real(dp), intent(in) :: u_et(2), du(2)   !! elastic displacement at the start; increment
         logical :: sheared
 
-        sheared = (mat%law == 3 .or. creeps(mat%law)) .and. any(abs(this%q) > 0.0_qp)
+        sheared = (mat%law == 3 .or. creeps(mat%law)) .and. any(abs(u_et + du) > 0.0_dp)
+        sheared = sheared .or. mat%damping > 0.0_qp .and. any(abs([u_et, du]) > 0.0_dp)
     end function is_sheared
 
     !> Friction coefficient after the slip s in the increment; of law 4 the state does that.
@@ -415,9 +430,10 @@ contains
         real(qp) :: unused
 
         if (creeps(mat%law)) then
-            resistance = this%p * viscous(mat, this, s, ln_theta(mat, this, s), unused)
+            resistance = this%p * viscous(mat, this, s, ln_theta(mat, this, s), unused) &
+                + mat%cohesion
         else
-            resistance = this%p * mu_after(mat, this, s)
+            resistance = this%p * mu_after(mat, this, s) + mat%cohesion
             if (mat%law == 1) resistance = resistance * ratio_after(mat, this%r_start, s)
         end if
     end function resistance_of
@@ -448,9 +464,10 @@ contains
 
     !> The spring when the share x of its displacement (associated: of the component that relaxes
     !> more slowly) has become slip: equivalent traction and slip.
-    subroutine pulled(mat, q, x, traction, slip)
+    subroutine pulled(mat, this, x, traction, slip)
         type(material), intent(in) :: mat
-        real(qp), intent(in) :: q(2), x
+        type(load_case), intent(in) :: this
+        real(qp), intent(in) :: x
         real(qp), intent(out) :: traction, slip
         real(qp) :: rates(2), left(2)
 
@@ -460,8 +477,9 @@ contains
             rates = rates / minval(rates)
             left = (1.0_qp - x) / (1.0_qp + (rates - 1.0_qp) * x)
         end if
-        traction = mat%alpha_t * sqrt((left(1) * q(1))**2 + (left(2) * q(2) / mat%rho)**2)
-        slip = norm2((1.0_qp - left) * q)
+        traction = this%stiffness * sqrt((left(1) * this%q(1))**2 + (left(2) * this%q(2) &
+            / mat%rho)**2)
+        slip = norm2((1.0_qp - left) * this%q)
     end subroutine pulled
 
 end module independent_laws

@@ -10,7 +10,7 @@ module path_checks
     private
 
     public :: check_equations, check_first_root, check_hold, check_range, check_tangent, &
-        expects_time
+        expects_time, viscous_of
 
     !> Kinds of faults.
     integer, parameter, public :: n_kinds = 19
@@ -82,8 +82,7 @@ contains
 
         call read_material(t%props, mat)
         call read_increment(mat, t%du, t%dt, t%old, t%given, t%pressure, this, closed)
-        this%q = t%old(3:4) + t%du(2:3)
-        expects_time = closed .and. is_sheared(mat, this) .and. .not. t%dt > 0.0_dp
+        expects_time = closed .and. is_sheared(mat, t%old(3:4), t%du(2:3)) .and. .not. t%dt > 0.0_dp
     end function expects_time
 
     !> Nothing moves after slip: the contact sticks, with the stiffness of its springs.
@@ -93,7 +92,8 @@ contains
         integer :: status
 
         kind_ = 0
-        if (creeps(nint(t%props(1))) .or. nint(t%new(1)) /= 2 .or. t%given) return
+        if (creeps(nint(t%props(1))) .or. nint(t%new(1)) /= 2 .or. t%given &
+            .or. viscous_of(t) > 0.0_dp) return
         if (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp) return
         zero = 0.0_dp
         state = t%new
@@ -113,7 +113,7 @@ contains
         real(dp), intent(inout) :: residual   !! the worst so far, by the scale of its terms
         type(material) :: mat
         type(load_case) :: this
-        real(qp) :: tau(2), slid(2), trial, strength, error, equivalent
+        real(qp) :: tau(2), slid(2), trial, strength, error, equivalent, carried(2), full
         logical :: closed
 
         kind_ = 0
@@ -124,29 +124,31 @@ contains
             return
         end if
         tau = t%traction(2:3)
-        slid = this%q - real(t%new(3:4), qp)
+        slid = this%moved - real(t%new(3:4), qp)
         error = 8.0_qp * eps * this%q_scale
         equivalent = sqrt(tau(1)**2 + (tau(2) / mat%rho)**2)
-        trial = mat%alpha_t * sqrt(this%q(1)**2 + (this%q(2) / mat%rho)**2)
+        trial = this%stiffness * sqrt(this%q(1)**2 + (this%q(2) / mat%rho)**2)
         strength = min(rested_strength(mat, this), mat%tau_max)
         kind_ = k_traction
-        if (norm2(tau - mat%alpha_t * t%new(3:4)) > mat%alpha_t * (error + 1.0e-290_qp) &
+        carried = mat%alpha_t * t%new(3:4) + this%viscous * (real(t%new(3:4), qp) - t%old(3:4))
+        if (norm2(tau - carried) > this%stiffness * (error + 1.0e-290_qp) &
             .or. abs(t%traction(1) + this%p) > 4.0_qp * eps * this%p) return
         if (nint(t%new(1)) == 1) then
             if (norm2(slid) > error + 1.0e-288_qp) return
             kind_ = k_verge
-            if (trial > strength * (1.0_qp + 200.0_qp * eps) + mat%alpha_t * (error + 1.0e-280_qp) &
+            if (trial > strength * (1.0_qp + 200.0_qp * eps) + this%stiffness * (error + 1.0e-280_qp) &
                 * max(1.0_qp, 1.0_qp / mat%rho)) return
             kind_ = k_equation
-            if (mat%law == 1 .and. this%mu_rest * this%p > 0.0_qp) then
-                if (abs(t%new(6) - min(1.0_qp, trial / (this%mu_rest * this%p))) > 64.0_qp * eps &
-                    * (1.0_qp + mat%alpha_t * error / max(eps, this%mu_rest * this%p))) return
+            full = this%mu_rest * this%p + mat%cohesion
+            if (mat%law == 1 .and. full > 0.0_qp) then
+                if (abs(t%new(6) - min(1.0_qp, trial / full)) > 64.0_qp * eps * (1.0_qp &
+                    + this%stiffness * error / max(eps, full))) return
                 if (abs(t%new(5) - this%mu_rest) > 32.0_qp * eps * mat%own(1)) return
             end if
             kind_ = 0
         else
             kind_ = k_verge
-            if (trial < strength * (1.0_qp - 200.0_qp * eps)) return
+            if (trial < strength * (1.0_qp - 200.0_qp * eps) - this%viscous * error) return
             kind_ = sliding_fault(t, mat, this, tau, slid, equivalent, trial, residual)
         end if
     end function check_equations
@@ -180,10 +182,11 @@ contains
             * t%new(7))) then
             return
         end if
-        work = dot_product(tau, slid)
+        work = dot_product(tau, slid) + this%viscous * sum((real(t%new(3:4), qp) - t%old(3:4))**2)
         gained = real(t%new(8), qp) - t%old(8)   ! at the end's traction, but by the exact rate
         if (work > 1.0e-280_qp .and. t%new(8) < 1.0e100_dp .and. mat%form /= 3 &
-            .and. abs(gained - work) > 16.0_qp * (error * norm2(tau) + eps * (t%new(8) + work)) &
+            .and. abs(gained - work) > 16.0_qp * (error * (norm2(tau) + this%viscous * this%q_scale) &
+            + eps * (t%new(8) + work)) &
             * max(1.0_qp, 1.0_qp / mat%rho)) return
 
         ! The slip is known better from its sum where that is short.
@@ -197,12 +200,12 @@ contains
             misfit = 0.0_qp
         end if
         if (equivalent >= mat%tau_max * (1.0_qp - 64.0_qp * eps)) then   ! the cap holds
-            own = this%p * t%new(5)
+            own = this%p * t%new(5) + mat%cohesion
             if (mat%law == 1) own = own * t%new(6)
             if (equivalent > mat%tau_max * (1.0_qp + 64.0_qp * eps)) return
             if (own < mat%tau_max * (1.0_qp - 1.0e3_qp * eps)) return
         else
-            own = this%p * t%new(5)
+            own = this%p * t%new(5) + mat%cohesion
             if (mat%law == 1) own = own * t%new(6)
             strength_scale = trial + own
             worst = abs(equivalent - own) / strength_scale
@@ -268,8 +271,8 @@ contains
         call read_material(t%props, mat)
         call read_increment(mat, t%du, t%dt, t%old, t%given, t%pressure, this, closed)
         if (nint(t%new(1)) /= 2) return
-        call pulled(mat, this%q, 0.0_qp, scale, slip)
-        taken = norm2(this%q - real(t%new(3:4), qp))
+        call pulled(mat, this, 0.0_qp, scale, slip)
+        taken = norm2(this%moved - real(t%new(3:4), qp))
         if (t%new(7) < this%q_scale) taken = real(t%new(7), qp) - t%old(7)
         call fill_grid(mat, this, x)
         k = 0
@@ -301,7 +304,7 @@ contains
             real(qp), intent(in) :: x
             real(qp), intent(out) :: g, slip
 
-            call pulled(mat, this%q, x, traction, slip)
+            call pulled(mat, this, x, traction, slip)
             g = traction - min(resistance_of(mat, this, slip), mat%tau_max)
         end subroutine misfit_at
 
@@ -368,6 +371,17 @@ contains
         end do
     end subroutine fill_grid
 
+    !> The damper as a spring [F/L^3].
+    function viscous_of(t) result(viscous)
+        type(trial_of), intent(in) :: t
+        real(dp) :: viscous
+        type(material) :: mat
+
+        call read_material(t%props, mat)
+        viscous = 0.0_dp
+        if (t%dt > 0.0_dp) viscous = real(min(mat%damping / t%dt, 2.0_qp**166), dp)
+    end function viscous_of
+
     !> The tangent against central differences of the library in quadruple precision; skipped where
     !> a kink is in the way.
     integer function check_tangent(t, m, error, skipped) result(kind_)
@@ -377,10 +391,13 @@ contains
         logical, intent(out) :: skipped
         real(qp) :: h(3), f(3, -1:1), by_du(3, 3), state(8), unused(3, 3), du(3), bend
         real(dp) :: stiff, worst
+        type(material) :: mat
         integer :: j, k, status
 
         kind_ = 0
         skipped = .true.
+        call read_material(t%props, mat)   ! differences see no pressure beside such a cohesion
+        if (abs(t%traction(1)) < 1.0e-9_qp * mat%cohesion) return
         h(1) = 1.0e-13_qp * (abs(t%du(1)) + abs(t%old(2)))
         h(2:3) = 1.0e-13_qp * (norm2(t%du(2:3)) + norm2(t%old(3:4)))
         h = max(h, 1.0e-200_qp)

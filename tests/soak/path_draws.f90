@@ -14,7 +14,9 @@ module path_draws
 
     type :: path
         real(dp), allocatable :: props(:)
-        logical :: needs_time        !! the law does
+        logical :: needs_time        !! the law or its damper does
+        logical :: damped            !! it has a damper
+        logical :: cohesive          !! it carries something without pressure
         logical :: extreme           !! over the whole range of the arithmetic
         real(dp) :: half             !! decades to either side that quantities span
         real(dp) :: pressure, reach, time   !! typical: pressure, elastic displacement, increment
@@ -39,7 +41,7 @@ contains
     !> A law with its options, and points under it that nothing has touched.
     subroutine draw_props(this)
         type(path), intent(out) :: this
-        real(dp) :: own(12), half, mu
+        real(dp) :: own(14), half, mu
         integer :: law, n
 
         this%extreme = chance(0.05_dp)
@@ -91,6 +93,7 @@ contains
         this%needs_time = any(law == [3, 4, 7, 8])
         call draw_options(this, own, n)
         this%props = [this%props, own(:n)]
+        this%needs_time = this%needs_time .or. this%damped
         if (this%extreme) call make_extreme(this)
         this%statev = 0.0_dp
         this%du = 0.0_dp
@@ -98,7 +101,7 @@ contains
 
     subroutine draw_subloading(this, own)
         type(path), intent(in) :: this
-        real(dp), intent(inout) :: own(12)
+        real(dp), intent(inout) :: own(14)
         integer :: form
 
         own(3) = decade(this%half) / this%reach
@@ -116,7 +119,7 @@ contains
     subroutine draw_flash_heating(this, mu, own)
         type(path), intent(in) :: this
         real(dp), intent(in) :: mu
-        real(dp), intent(inout) :: own(12)
+        real(dp), intent(inout) :: own(14)
 
         own(1) = 0.02_dp * mu * decade(0.3_dp * this%half)
         own(2) = 0.03_dp * mu * decade(0.3_dp * this%half)
@@ -131,12 +134,14 @@ contains
         own(9) = own(3) / own(4) * decade(this%half)
     end subroutine draw_flash_heating
 
-    !> Shear cap, on either side of the strength or just at it, and orthotropy.
+    !> Shear cap, on either side of the strength or just at it, orthotropy, cohesion and damper.
     subroutine draw_options(this, own, n)
-        type(path), intent(in) :: this
-        real(dp), intent(inout) :: own(12)
+        type(path), intent(inout) :: this
+        real(dp), intent(inout) :: own(14)
         integer, intent(inout) :: n
 
+        this%damped = .false.
+        this%cohesive = .false.
         if (chance(0.4_dp)) return
         n = n + 1
         if (chance(0.6_dp)) own(n) = own(1) * this%pressure * decade(0.5_dp)
@@ -145,6 +150,14 @@ contains
         own(n + 1) = 10.0_dp**draw(-1.0_dp, 1.0_dp)
         if (chance(0.2_dp)) own(n + 1) = 10.0_dp**draw(-3.0_dp, 3.0_dp)
         own(n + 2) = merge(0.0_dp, 1.0_dp, chance(0.6_dp))
+        if (chance(0.5_dp)) own(n + 1) = 0.0_dp
+        n = n + 2
+        if (chance(0.3_dp)) return
+        ! the state of law 8 at zero pressure, which only cohesion reaches, is not compared yet
+        this%cohesive = chance(0.6_dp) .and. nint(this%props(1)) /= 8
+        if (this%cohesive) own(n + 1) = this%props(3) * this%reach * decade(this%half)
+        this%damped = chance(0.5_dp)
+        if (this%damped) own(n + 2) = this%props(3) * this%time * decade(this%half)
         n = n + 2
     end subroutine draw_options
 
@@ -214,6 +227,8 @@ contains
             this%du(i, 1) = this%du(i, 1) * 10.0_dp**draw(-200.0_dp, 0.0_dp)
         case (8)
             size_ = size_ * decade(min(2.0_dp * this%half, 6.0_dp))
+        case (9)   ! just touches
+            if (this%cohesive) this%du(i, 1) = -u(1)
         case default
         end select
         this%du(i, 2:3) = size_ * [cos(angle), sin(angle)]

@@ -15,7 +15,7 @@ program soak
     use independent_laws, only : creeps
     use path_checks, only : check_equations, check_first_root, check_range, check_tangent, &
         check_hold, expects_time, k_batch, k_batch_status, k_code, k_convergence, k_entry, &
-        k_hold, k_refused, kinds, n_kinds, tally, trial_of
+        k_hold, k_refused, kinds, n_kinds, tally, trial_of, viscous_of
     use path_draws, only : draw_increment, draw_props, draw_state, draw_time, path, points
     implicit none
 
@@ -91,6 +91,7 @@ contains
             one(i)%old = this%statev(i, :)
             one(i)%given = entry_ == pressure_given
             one(i)%pressure = this%pressure * draw(-0.2_dp, 2.0_dp)
+            if (draw(0.0_dp, 1.0_dp) < 0.05_dp) one(i)%pressure = 0.0_dp
             call update(one(i), entry_)
             call examine(this, entry_, one(i))
             if (entry_ == in_a_frame .and. .not. this%extreme .and. mod(i, 8) == 0) then
@@ -239,6 +240,7 @@ contains
         force = max(abs(t%traction(1)), norm2(t%traction(2:3)), t%props(3) * norm2(t%old(3:4)), &
             tiny(force))
         length = max(norm2(t%old(3:4)) + norm2(t%du(2:3)), tiny(length))
+        force = max(force, viscous_of(t) * length)
         apart = maxval(abs(traction - t%traction(:size(traction)))) / force
         apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)))))
         condition = 1.0_dp
@@ -281,7 +283,8 @@ contains
         state(2:4) = matmul(q, state(2:4))
         call friction_update_frame(matmul(q, t%du), q(:, 1), t%dt, t%props, state, traction, &
             tangent, status, axis=q(:, 2))
-        scale = 1.0e-13_dp * maxval(t%props(2:3)) * (norm2(t%du) + norm2(t%old(2:4)))
+        scale = 1.0e-13_dp * (maxval(t%props(2:3)) + viscous_of(t)) * (norm2(t%du) &
+            + norm2(t%old(2:4)))
         if (status < 0) then
             call note(k_entry, t)
             return
@@ -291,7 +294,7 @@ contains
                 maxval(abs(t%tangent)) / maxval(t%props(2:3)))) call note(k_entry, t)
         end if
         slid = nint(state(1)) == 2 .and. .not. creeps(nint(t%props(1))) &
-            .and. .not. (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp)
+            .and. .not. (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp) .and. .not. viscous_of(t) > 0.0_dp
         zero = 0.0_dp
         call friction_update_frame(zero, q(:, 1), t%dt, t%props, state, traction, tangent, &
             status, axis=q(:, 2))

@@ -3,20 +3,20 @@
 module law_suite
     use, intrinsic :: iso_fortran_env, only : dp => real64, real128
     use draws, only : draw
-    use friction_mod, only : friction_update, law_coulomb, law_flash_heating, &
+    use friction_mod, only : friction_place, friction_update, law_coulomb, law_flash_heating, &
         law_linker_dieterich, law_rate_state, law_slip_weakening, law_slip_weakening_healing, &
         law_static_kinetic, law_subloading
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
 
-    public :: exact_tangent, law_case, law_point, laws, random_law_point
+    public :: exact_tangent, has_damper, law_case, law_point, laws, random_law_point
 
     integer, parameter :: qp = real128
-    integer, parameter :: most_own = 12
+    integer, parameter :: most_own = 14
 
     type :: law_case
-        character(len=26) :: name
+        character(len=27) :: name
         integer :: number            !! props(1)
         integer :: n_own             !! number of own constants, all with their optional ones
         real(dp) :: own(most_own)    !! for N, mm, s
@@ -37,8 +37,9 @@ module law_suite
     real(dp), parameter :: linker_dieterich(6) = [rate_state, 0.05_dp]
     real(dp), parameter :: unused(most_own) = 0.0_dp
     real(dp), parameter :: associated(2) = [0.6_dp, 0.0_dp], radial(2) = [0.6_dp, 1.0_dp]
+    real(dp), parameter :: c = 0.5_dp, eta = 1.0_dp, bare(3) = 0.0_dp   ! no option before these
 
-    type(law_case), parameter :: laws(35) = [ &
+    type(law_case), parameter :: laws(56) = [ &
         law_case('subloading', law_subloading, 6, [subloading, unused(7:)], 'mmdddm', .false.), &
         law_case('subloading, exact rate', law_subloading, 7, &
         [subloading, 1.0_dp, unused(8:)], 'mmdddm-', .false.), &
@@ -97,7 +98,7 @@ module law_suite
         law_case('flash heating, capped', law_flash_heating, 10, [flash_heating, tau_max, &
         unused(11:)], 'mmddmmd-dd', .true.), &
         law_case('flash heating, associated', law_flash_heating, 12, [flash_heating, 0.0_dp, &
-        associated], 'mmddmmd-d-o-', .true.), &
+        associated, unused(13:)], 'mmddmmd-d-o-', .true.), &
         law_case('Linker-Dieterich, ageing', law_linker_dieterich, 8, [linker_dieterich, 0.0_dp, &
         theta_0, unused(9:)], 'mmddmm-d', .true.), &
         law_case('Linker-Dieterich, slip', law_linker_dieterich, 8, [linker_dieterich, 1.0_dp, &
@@ -105,13 +106,56 @@ module law_suite
         law_case('Linker-Dieterich, capped', law_linker_dieterich, 9, [linker_dieterich, 0.0_dp, &
         theta_0, tau_max, unused(10:)], 'mmddmm-dd', .true.), &
         law_case('Linker-Dieterich, assoc.', law_linker_dieterich, 11, [linker_dieterich, 1.0_dp, &
-        theta_0, 0.0_dp, associated, unused(12:)], 'mmddmm-d-o-', .true.)]
+        theta_0, 0.0_dp, associated, unused(12:)], 'mmddmm-d-o-', .true.), &
+        law_case('subloading, cohesive', law_subloading, 12, [subloading, 0.0_dp, 0.0_dp, bare, &
+        c, 0.0_dp, unused(14:)], 'mmdddm-----d', .false.), &
+        law_case('exact rate, cohesive', law_subloading, 12, [subloading, 1.0_dp, 0.0_dp, bare, &
+        c, 0.0_dp, unused(14:)], 'mmdddm-----d', .false.), &
+        law_case('cotangent, cohesive', law_subloading, 12, [subloading, 0.0_dp, 1.0_dp, bare, &
+        c, 0.0_dp, unused(14:)], 'mmdddm-----d', .false.), &
+        law_case('Coulomb, cohesive', law_coulomb, 5, [mu, bare, c, unused(6:)], 'm---d', &
+        .false.), &
+        law_case('static-kinetic, cohesive', law_static_kinetic, 7, [static_kinetic, bare, c, &
+        unused(8:)], 'mmd---d', .true.), &
+        law_case('rate-and-state, cohesive', law_rate_state, 11, [rate_state, 0.0_dp, theta_0, &
+        bare, c, unused(12:)], 'mmddm-d---d', .true.), &
+        law_case('slip-weakening, cohesive', law_slip_weakening, 7, [slip_weakening, bare, c, &
+        unused(8:)], 'mmd---d', .false.), &
+        law_case('cohesive and capped', law_subloading, 12, [subloading, 0.0_dp, 0.0_dp, &
+        2.0_dp * tau_max, 0.0_dp, 0.0_dp, c, 0.0_dp, unused(14:)], 'mmdddm--d--d', .false.), &
+        law_case('Coulomb, with all options', law_coulomb, 5, [mu, 2.0_dp * tau_max, associated, &
+        c, unused(6:)], 'mdo-d', .false.), &
+        law_case('exact, associated, cohesive', law_subloading, 12, [subloading, 1.0_dp, 0.0_dp, &
+        0.0_dp, associated, c, 0.0_dp, unused(14:)], 'mmdddm---o-d', .false.), &
+        law_case('slip law, radial, cohesive', law_rate_state, 11, [rate_state, 1.0_dp, theta_0, &
+        0.0_dp, radial, c, unused(12:)], 'mmddm-d-o-d', .true.), &
+        law_case('subloading, damped', law_subloading, 13, [subloading, 0.0_dp, 0.0_dp, bare, &
+        0.0_dp, eta, unused(14:)], 'mmdddm------d', .true.), &
+        law_case('exact rate, damped', law_subloading, 13, [subloading, 1.0_dp, 0.0_dp, bare, &
+        0.0_dp, eta, unused(14:)], 'mmdddm------d', .true.), &
+        law_case('Coulomb, damped', law_coulomb, 6, [mu, bare, 0.0_dp, eta, unused(7:)], &
+        'm----d', .true.), &
+        law_case('static-kinetic, damped', law_static_kinetic, 8, [static_kinetic, bare, 0.0_dp, &
+        eta, unused(9:)], 'mmd----d', .true.), &
+        law_case('rate-and-state, damped', law_rate_state, 12, [rate_state, 0.0_dp, theta_0, &
+        bare, 0.0_dp, eta, unused(13:)], 'mmddm-d----d', .true.), &
+        law_case('slip-weakening, damped', law_slip_weakening, 8, [slip_weakening, bare, 0.0_dp, &
+        eta, unused(9:)], 'mmd----d', .true.), &
+        law_case('associated, damped', law_coulomb, 6, [mu, 0.0_dp, associated, 0.0_dp, eta, &
+        unused(7:)], 'm-o--d', .true.), &
+        law_case('subloading, all options', law_subloading, 13, [subloading, 0.0_dp, 2.0_dp, &
+        2.0_dp * tau_max, radial, c, eta, unused(14:)], 'mmdddm--do-dd', .true.), &
+        law_case('healing, cohesive, damped', law_slip_weakening_healing, 9, [healing, bare, c, &
+        eta, unused(10:)], 'mmdd---dd', .true.), &
+        law_case('flash, cohesive, damped', law_flash_heating, 14, [flash_heating, bare, c, &
+        eta], 'mmddmmd-d---dd', .true.)]
 
     !> Constants, state and increment of a contact point.
     type :: law_point
         real(dp), allocatable :: props(:)
         real(dp) :: statev(8), du(3), dt
         real(dp) :: ratio = 1.0_dp   !! mu_2/mu_1
+        real(dp) :: cohesion = 0.0_dp, damping = 0.0_dp
         real(dp) :: reach   !! slips and elastic displacements are of this size [L]
     end type law_point
 
@@ -140,6 +184,9 @@ contains
                 p%props(3 + i) = p%ratio
             end if
         end do
+        i = friction_place(this%number, 'cohesion')
+        if (size(p%props) >= i) p%cohesion = p%props(i)
+        if (size(p%props) > i) p%damping = p%props(i + 1)
         pressure = 10.0_dp * 10.0_dp**draw(-half, half)
         p%reach = 0.4_dp * pressure / p%props(3)
         p%dt = 1.0e-3_dp * 10.0_dp**draw(-half, half)
@@ -153,6 +200,14 @@ contains
                 draw(-1.0_dp, 1.0_dp) * factor, draw(-1.0_dp, 1.0_dp) * factor]
         end do
     end function random_law_point
+
+    !> Has the contact a damper, whose force its state does not tell?
+    pure function has_damper(this)
+        type(law_case), intent(in) :: this
+        logical :: has_damper
+
+        has_damper = friction_place(this%number, 'eta_t') == 3 + this%n_own
+    end function has_damper
 
     !> Traction and d(traction)/d(du) by the quadruple copy of the library, the latter by central
     !> differences: error about 1e-15 of the stiffness.
