@@ -12,8 +12,8 @@ module friction_batch_kernel
     use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &
         c_mu_0, c_own, c_r_0, c_squeeze, lane_ageing, lane_cotangent, lane_coulomb, &
         lane_exact_rate, lane_reciprocal, lane_slip_law, lane_static_kinetic, lane_subloading, &
-        lanes, least_ratio, n_constants, no_cap, rest_block, slide_block, verge, widest, with_cap, &
-        with_two_coefficients
+        lanes, least_ratio, n_constants, no_cap, rest_block, slide_block, unsure, verge, widest, &
+        with_cap, with_two_coefficients
     use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
     use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
         state_slip_weakening
@@ -188,7 +188,6 @@ contains
             trial%follows = .true.
             call rest_subloading_exact(constants, task%dt, trial%rest)
             trial%start = -1.0_wp
-            if (task%viscous <= 0.0_wp) call leave_reloading(task, constants, statev, trial, valid)
         case (lane_coulomb)
             call rest_coulomb(constants, trial%rest)
         case (lane_static_kinetic)
@@ -199,6 +198,9 @@ contains
             call rest_slip_weakening(constants, trial%rest)
         end select
         if (task%cohesion > 0.0_wp) call add_cohesion(task, du, statev, trial%rest, valid)
+        if (trial%follows .and. task%viscous <= 0.0_wp) then
+            call leave_reloading(task, constants, statev, trial, valid)
+        end if
         n_slides = 0
         n_left = 0
         do i = 1, lanes
@@ -208,6 +210,9 @@ contains
             n_slides = n_slides + trial%moves(i)
             left(i) = 0
             if (min(valid(i), trial%rest%valid(i)) < 0.0_wp) left(i) = 1
+            if (abs(trial%rest%traction(i) - strength * (1.0_wp + verge)) < unsure * strength) then
+                left(i) = 1
+            end if
             n_left = n_left + left(i)
         end do
     end subroutine find_trial
@@ -323,7 +328,7 @@ contains
         real(wp), intent(in) :: statev(task%stride, 8)
         type(trial_block), intent(inout) :: trial
         real(wp), intent(inout) :: valid(lanes)
-        real(wp) :: u1, u2, q2, length, along, reach
+        real(wp) :: u1, u2, q2, length, along, reach, square
         integer :: i
 
         do i = 1, lanes
@@ -340,8 +345,9 @@ contains
                 if (abs(u1) + abs(u2) > 0.0_wp .and. abs(u1) + abs(u2) < smallest) then
                     valid(i) = -1.0_wp   ! its squares underflow
                 end if
-                if (max(along - reach * length, reach * along - (trial%q1(i)**2 + q2**2) * &
-                    length) < 0.0_wp) then
+                square = trial%q1(i)**2 + q2**2
+                if (max(along - (1.0_wp + unsure) * reach * length, reach * along - (1.0_wp + &
+                    unsure) * square * length) < 0.0_wp) then
                     valid(i) = -1.0_wp
                 end if
             end if

@@ -15,7 +15,8 @@
 !> (src/CMakeLists.txt).
 module friction_subloading_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
-    use friction_lane_block, only : below_largest, lanes, least_ratio, verge, widest, zero_unless
+    use friction_lane_block, only : below_largest, lanes, least_ratio, unsure, verge, widest, &
+        zero_unless
     use friction_subloading_core, only : chebyshev, inverses, logarithm_after, moved, settled, &
         slip_guess, slip_move, slip_task, slope, start_far
     implicit none
@@ -128,6 +129,7 @@ contains
             strength = max(trial%r(i), least_ratio) * (inc%mu_k + trial%c(i) * iw0) * trial%p(i)
             if (trial%tau(i) > strength * (1.0_wp + verge)) trial%slides(i) = 1.0_wp
             if (trial%p(i) <= 0.0_wp) trial%slides(i) = 0.0_wp
+            if (abs(trial%tau(i) - strength * (1.0_wp + verge)) < unsure * strength) valid = -1.0_wp
             fall = trial%p(i) * inc%kappa * trial%c(i)
             if (inc%alpha_t * inc%w0**2 <= fall) valid = min(valid, -trial%slides(i))
             if (trial%p(i) * (abs(trial%q1(i)) + abs(trial%q2(i))) > 0.0_wp) valid = min(valid, &

@@ -30,6 +30,9 @@ module friction_lane_block
     real(wp), parameter, public :: no_cap = 1.0e90_wp
     real(wp), parameter, public :: least_ratio = 1.0e-100_wp   !! of module friction_law
     real(wp), parameter, public :: verge = 32.0_wp * epsilon(verge)   !! of module friction_contact
+    !> Lanes round in another way than the routine for one point: a point whose numbers are this
+    !> near to a choice, as a share of them, is left to that.
+    real(wp), parameter, public :: unsure = 0.25_wp * verge
 
     !> Laws with lanes.
     integer, parameter, public :: lane_none = 0, lane_subloading = 1, lane_exact_rate = 2, &

@@ -220,7 +220,7 @@ contains
         type(search), intent(inout) :: now
         real(wp), intent(out) :: still   !! above 0 as long as a point has not settled
         real(wp), dimension(lanes) :: u, e_u, y
-        real(wp) :: by_z, fall, misfit, move, next
+        real(wp) :: by_z, fall, misfit, move, next, steepness
         logical :: nearly
         integer :: i
 
@@ -243,7 +243,10 @@ contains
             if (misfit > 0.0_wp) now%low(i) = now%z(i)
             if (misfit <= 0.0_wp) now%high(i) = now%z(i)
             move = misfit / fall
-            nearly = abs(move) <= small
+            ! u bends the more, the faster it changes: far from equilibrium with its slip the state
+            ! may change by a power of the slip, and u by b/a of its logarithm
+            steepness = max(1.0_wp, abs(1.0_wp + now%b_over_a(i) * by_ln_slip(i)))
+            nearly = abs(move) * steepness <= small
             next = now%z(i) + move
             if (max(now%low(i) - next, next - now%high(i)) >= 0.0_wp .and. .not. nearly) then
                 next = 0.5_wp * (now%low(i) + now%high(i))

@@ -2,7 +2,7 @@
 module friction_slip_weakening_lanes
     use, intrinsic :: iso_fortran_env, only : wp => real64
     use friction_lane_block, only : c_cap, c_own, lanes, n_constants, no_cap, rest_block, &
-        slide_block
+        slide_block, unsure
     use friction_slip_weakening_core, only : coefficient_at, fall_at, slip_to_balance
     implicit none
     private
@@ -53,6 +53,9 @@ contains
             block%resistance(i) = block%mu_end(i) * block%pressure(i)
             block%d_slip(i) = -fall_at(block%r_end(i), (constants(i, c_mu_s) &
                 - constants(i, c_mu_k)) * block%pressure(i), constants(i, c_d_c))
+            if (abs(block%r_end(i) - constants(i, c_d_c)) < unsure * constants(i, c_d_c)) then
+                block%left(i) = 1.0_wp   ! which side of the kink?
+            end if
         end do
     end subroutine slide_slip_weakening
 

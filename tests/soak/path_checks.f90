@@ -136,8 +136,8 @@ contains
         if (nint(t%new(1)) == 1) then
             if (norm2(slid) > error + 1.0e-288_qp) return
             kind_ = k_verge
-            if (trial > strength * (1.0_qp + 200.0_qp * eps) + this%stiffness * (error + 1.0e-280_qp) &
-                * max(1.0_qp, 1.0_qp / mat%rho)) return
+            if (trial > strength * (1.0_qp + 200.0_qp * eps) + this%stiffness * (error &
+                + 1.0e-280_qp) * max(1.0_qp, 1.0_qp / mat%rho)) return
             kind_ = k_equation
             full = this%mu_rest * this%p + mat%cohesion
             if (mat%law == 1 .and. full > 0.0_qp) then
@@ -185,9 +185,8 @@ contains
         work = dot_product(tau, slid) + this%viscous * sum((real(t%new(3:4), qp) - t%old(3:4))**2)
         gained = real(t%new(8), qp) - t%old(8)   ! at the end's traction, but by the exact rate
         if (work > 1.0e-280_qp .and. t%new(8) < 1.0e100_dp .and. mat%form /= 3 &
-            .and. abs(gained - work) > 16.0_qp * (error * (norm2(tau) + this%viscous * this%q_scale) &
-            + eps * (t%new(8) + work)) &
-            * max(1.0_qp, 1.0_qp / mat%rho)) return
+            .and. abs(gained - work) > 16.0_qp * (error * (norm2(tau) + this%viscous &
+            * this%q_scale) + eps * (t%new(8) + work)) * max(1.0_qp, 1.0_qp / mat%rho)) return
 
         ! The slip is known better from its sum where that is short.
         if (t%new(7) < this%q_scale) then

@@ -247,12 +247,30 @@ contains
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
         if (creeps(nint(t%props(1)))) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
         inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
-        if (any(nint(t%props(1)) == [5, 6])) inner(2) = max(inner(2), length)   ! a slip
-        apart = max(apart, maxval(abs(state(5:6) - t%new(5:6)) / inner) / condition)
+        ! Their friction is mu_s less what the slip D took away, which rounds by that of mu_s.
+        if (any(nint(t%props(1)) == [5, 6])) inner = max(inner, [t%props(4), length])
+        apart = max(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
+        if (creeps(nint(t%props(1)))) condition = condition + blur_of_state(t, length) / 300.0_dp
+        apart = max(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         apart = max(apart, abs(state(8) - t%new(8)) / max(force * length + t%new(8), &
             1.0e-300_dp))
     end function distance
+
+    !> By how many units of round-off theta may differ because the slip is a difference of
+    !> displacements and has the round-off of these: length/d_c times d(ln theta)/d(slip/d_c), which
+    !> beside a cohesion that carries nearly all of the traction is large.
+    function blur_of_state(t, length) result(blur)
+        type(trial_of), intent(in) :: t
+        real(dp), intent(in) :: length   !! of the displacements [L]
+        real(dp) :: blur
+        real(dp) :: x
+
+        x = (t%new(7) - t%old(7)) / t%props(6)
+        blur = 0.0_dp
+        if (nint(t%old(1)) == 0 .or. x <= 0.0_dp .or. x > 500.0_dp) return
+        blur = length / t%props(6) * abs(log(t%new(6) / t%old(6))) / max(exp(x) - 1.0_dp, x)
+    end function blur_of_state
 
     !> Between two tangents, by stiffness and condition.
     function tangent_distance(t, tangent) result(apart)
@@ -263,7 +281,7 @@ contains
         integer :: m
 
         m = size(tangent, 1)
-        stiff = max(t%props(2), t%props(3))
+        stiff = max(t%props(2), t%props(3) + viscous_of(t))
         apart = maxval(abs(tangent - t%tangent(:m, :m))) / max(stiff, maxval(abs(tangent))**2 &
             / stiff)
     end function tangent_distance
@@ -294,7 +312,8 @@ contains
                 maxval(abs(t%tangent)) / maxval(t%props(2:3)))) call note(k_entry, t)
         end if
         slid = nint(state(1)) == 2 .and. .not. creeps(nint(t%props(1))) &
-            .and. .not. (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp) .and. .not. viscous_of(t) > 0.0_dp
+            .and. .not. (nint(t%props(1)) == 3 .and. .not. t%dt > 0.0_dp) &
+            .and. .not. viscous_of(t) > 0.0_dp
         zero = 0.0_dp
         call friction_update_frame(zero, q(:, 1), t%dt, t%props, state, traction, tangent, &
             status, axis=q(:, 2))
