@@ -46,11 +46,11 @@ module friction_anisotropy
     type :: sliding_way
         real(wp) :: tau(2)       !! traction [F/L^2]
         real(wp) :: along(2)     !! unit vector of the slip [-]
-        real(wp) :: answer(2)    !! change of the traction when it grows; along . answer = 1 [-]
+        real(wp) :: response(2)  !! change of the traction when it grows; along . response = 1 [-]
         real(wp) :: across       !! stiffness against q at right angles to the slip [F/L^3]
-        real(wp) :: turn         !! fall of T_eq with such q, where the slip is fixed [F/L^3]
+        real(wp) :: cross_stiffness   !! fall of T_eq with such q, where the slip is fixed [F/L^3]
         real(wp) :: stiffness    !! fall of T_eq with slip, where q is fixed [F/L^3]
-        real(wp) :: lever        !! work of the traction over slip and T_eq [-]
+        real(wp) :: work_ratio   !! work of the traction over slip and T_eq [-]
     end type sliding_way
 
     !> The spring of an associated surface. Each component of the traction relaxes at a rate of its
@@ -150,11 +150,11 @@ contains
         now = relaxed(spring, x)
         way%tau = (resistance / now%equivalent) * now%q
         way%along = now%along
-        way%answer = now%e * now%along / now%mean
+        way%response = now%e * now%along / now%mean
         way%across = (resistance / now%equivalent) * now%e(1) * now%e(2) / now%mean
-        way%turn = 0.0_wp
+        way%cross_stiffness = 0.0_wp
         way%stiffness = spring%alpha_t * now%reach
-        way%lever = 1.0_wp / now%reach
+        way%work_ratio = 1.0_wp / now%reach
     end function associated_way
 
     pure subroutine on_an_ellipse(self, x, there)

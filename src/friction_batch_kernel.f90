@@ -45,14 +45,14 @@ module friction_batch_kernel
         real(wp) :: length(lanes)    !! of q, where two coefficients count [L]
         real(wp) :: stiffness(lanes) !! fall of T_eq with slip [F/L^3]
         logical :: follows           !! is there such a law?
-        integer(c_int) :: moves(lanes)   !! 1 where the traction is beyond the strength, else 0
+        integer(c_int) :: slides(lanes)   !! 1 where the traction is beyond the strength, else 0
     end type trial_block
 
     !> What traction and tangent are made of.
     type :: answer_block
         real(wp) :: t1(lanes), t2(lanes)   !! direction of the slip; 0 where nothing slides [-]
         real(wp) :: per_traction(lanes)   !! 1/T_eq of the trial, where it slides [L^2/F]
-        real(wp) :: lever(lanes)     !! work of the traction over slip and T_eq [-]
+        real(wp) :: work_ratio(lanes)     !! work of the traction over slip and T_eq [-]
         real(wp) :: squeezed(lanes)  !! how much the strength depends on the direction [-]
         real(wp) :: share(lanes)     !! of q that stays elastic [-]
         real(wp) :: coupling(lanes)  !! alpha_t/D of docs/theory.md, section 4; 0 in stick [-]
@@ -204,10 +204,10 @@ contains
         n_slides = 0
         n_left = 0
         do i = 1, lanes
-            trial%moves(i) = 0
+            trial%slides(i) = 0
             strength = min(trial%rest%strength(i), constants(i, c_cap))
-            if (trial%rest%traction(i) > strength * (1.0_wp + verge)) trial%moves(i) = 1
-            n_slides = n_slides + trial%moves(i)
+            if (trial%rest%traction(i) > strength * (1.0_wp + verge)) trial%slides(i) = 1
+            n_slides = n_slides + trial%slides(i)
             left(i) = 0
             if (min(valid(i), trial%rest%valid(i)) < 0.0_wp) left(i) = 1
             if (abs(trial%rest%traction(i) - strength * (1.0_wp + verge)) < unsure * strength) then
@@ -422,7 +422,7 @@ contains
         integer :: i, first
 
         do first = 1, lanes
-            if (trial%moves(first) > 0) exit
+            if (trial%slides(first) > 0) exit
         end do
         slid%n = lanes
         do i = 1, lanes
@@ -433,7 +433,7 @@ contains
             slid%mu_rest(i) = trial%rest%mu_rest(first)
             own_strength(i) = trial%rest%strength(first)
             slid%stiffness(i) = trial%stiffness(first)
-            if (trial%moves(i) > 0) then
+            if (trial%slides(i) > 0) then
                 slid%trial(i) = trial%rest%traction(i)
                 slid%pressure(i) = trial%rest%pressure(i)
                 slid%mu(i) = trial%rest%mu(i)
@@ -445,7 +445,7 @@ contains
         end do
         call slide(task, constants, own_strength, slid)
         do i = 1, lanes
-            if (slid%left(i) > 0.0_wp) left(i) = trial%moves(i)
+            if (slid%left(i) > 0.0_wp) left(i) = trial%slides(i)
         end do
     end subroutine slide_all
 
@@ -464,7 +464,7 @@ contains
         n = 0
         do i = 1, lanes
             place(n + 1) = i
-            n = n + trial%moves(i)
+            n = n + trial%slides(i)
         end do
         packed%n = min(lanes, iand(n_slides + widest - 1, not(widest - 1)))
         place(n_slides + 1:packed%n) = place(1)   ! whole vectors: the first one fills the last
@@ -717,7 +717,7 @@ contains
         real(wp), intent(inout) :: statev(task%stride, 8), traction(task%stride, task%ndir)
         real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
         type(answer_block) :: answer
-        real(wp) :: closed, mean, mu, r, slip, share, resistance, d_slip, d_pressure, moves
+        real(wp) :: closed, mean, mu, r, slip, share, resistance, d_slip, d_pressure, slides
         integer :: i
 
         if (iand(task%options, with_two_coefficients) > 0) then
@@ -727,7 +727,7 @@ contains
         end if
         !GCC$ ivdep
         do i = 1, lanes
-            moves = 0.0_wp
+            slides = 0.0_wp
             slip = 0.0_wp
             resistance = 0.0_wp
             d_slip = 0.0_wp
@@ -737,8 +737,8 @@ contains
             closed = 0.0_wp
             if (trial%rest%pressure(i) > 0.0_wp) closed = 1.0_wp
             share = closed
-            if (trial%moves(i) > 0) then
-                moves = 1.0_wp
+            if (trial%slides(i) > 0) then
+                slides = 1.0_wp
                 slip = slid%slip(i)
                 resistance = slid%resistance(i)
                 d_slip = slid%d_slip(i)
@@ -752,7 +752,7 @@ contains
             statev(i, 6) = r
             answer%d_slip(i) = d_slip
             answer%by_du_n(i) = -constants(i, c_alpha_n) * answer%coupling(i) * d_pressure
-            statev(i, 1) = 3.0_wp - 2.0_wp * closed + moves
+            statev(i, 1) = 3.0_wp - 2.0_wp * closed + slides
             statev(i, 2) = statev(i, 2) + du(i, 1)
             statev(i, 3) = share * trial%q1(i)
             statev(i, 4) = share * trial%q2(i)
@@ -761,7 +761,7 @@ contains
             if (trial%follows) then
                 if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
             end if
-            statev(i, 8) = statev(i, 8) + mean * slip * answer%lever(i)
+            statev(i, 8) = statev(i, 8) + mean * slip * answer%work_ratio(i)
         end do
         call write_answer(task, constants, trial, answer, traction, tangent)
     end subroutine finish
@@ -773,7 +773,7 @@ contains
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
         type(answer_block), intent(out) :: answer
-        real(wp) :: force, total, moves, shared
+        real(wp) :: force, total, slides, shared
         integer :: i
 
         do i = 1, lanes
@@ -781,12 +781,12 @@ contains
             total = max(constants(i, c_alpha_t) + slid%d_slip(i), epsilon(1.0_wp) &
                 * constants(i, c_alpha_t))
             shared = 1.0_wp / (force * total)   ! one division for two
-            moves = merge(constants(i, c_alpha_t), 0.0_wp, trial%moves(i) > 0)
+            slides = merge(constants(i, c_alpha_t), 0.0_wp, trial%slides(i) > 0)
             answer%per_traction(i) = total * shared
-            answer%coupling(i) = moves * force * shared
-            answer%t1(i) = trial%q1(i) * (moves * answer%per_traction(i))
-            answer%t2(i) = trial%q2(i) * (moves * answer%per_traction(i))
-            answer%lever(i) = 1.0_wp
+            answer%coupling(i) = slides * force * shared
+            answer%t1(i) = trial%q1(i) * (slides * answer%per_traction(i))
+            answer%t2(i) = trial%q2(i) * (slides * answer%per_traction(i))
+            answer%work_ratio(i) = 1.0_wp
             answer%squeezed(i) = 0.0_wp
         end do
     end subroutine find_direction
@@ -797,23 +797,24 @@ contains
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
         type(answer_block), intent(out) :: answer
-        real(wp) :: length, force, total, moves, shared, per_length
+        real(wp) :: length, force, total, slides, shared, per_length
         integer :: i
 
         do i = 1, lanes
-            moves = merge(1.0_wp, 0.0_wp, trial%moves(i) > 0)
+            slides = merge(1.0_wp, 0.0_wp, trial%slides(i) > 0)
             length = trial%length(i)
             force = max(trial%rest%traction(i), smallest)
             ! length times the sum of stiffnesses
             total = max(force + slid%d_slip(i) * length, epsilon(1.0_wp) * force)
             shared = 1.0_wp / (force * length)   ! one division for two
             answer%per_traction(i) = length * shared
-            per_length = moves * force * shared
+            per_length = slides * force * shared
             answer%t1(i) = trial%q1(i) * per_length
             answer%t2(i) = trial%q2(i) * per_length
-            answer%lever(i) = constants(i, c_alpha_t) * length * answer%per_traction(i)
-            answer%squeezed(i) = moves * (constants(i, c_squeeze)**2 - 1.0_wp) * answer%lever(i)
-            answer%coupling(i) = moves * constants(i, c_alpha_t) * length / total
+            answer%work_ratio(i) = constants(i, c_alpha_t) * length * answer%per_traction(i)
+            answer%squeezed(i) = slides * (constants(i, c_squeeze)**2 - 1.0_wp) &
+                * answer%work_ratio(i)
+            answer%coupling(i) = slides * constants(i, c_alpha_t) * length / total
         end do
     end subroutine turn_direction
 

@@ -330,8 +330,8 @@ contains
         if (status < 0) return
 
         ! How the slip's resistance grows with q, and with the pressure.
-        pull(1) = slid%d_slip * way%along(1) + way%turn * way%along(2)
-        pull(2) = slid%d_slip * way%along(2) - way%turn * way%along(1)
+        pull(1) = slid%d_slip * way%along(1) + way%cross_stiffness * way%along(2)
+        pull(2) = slid%d_slip * way%along(2) - way%cross_stiffness * way%along(1)
         by_p = slid%d_pressure
         mean = slid%resistance
         if (surface%follows_path) then   ! the traction at the start of sliding counts, too
@@ -352,13 +352,13 @@ contains
         new%u_et(1) = share * tau(1)
         new%u_et(2) = share * tau(2)
         new%slip = min(old%slip + slid%slip, largest)
-        new%dissipation = min(old%dissipation + mean * slid%slip * way%lever, largest)
-        by_pressure(1) = coupling * by_p * way%answer(1)
-        by_pressure(2) = coupling * by_p * way%answer(2)
-        by_q(1, 1) = coupling * way%answer(1) * pull(1) + way%across * way%along(2)**2
-        by_q(2, 1) = coupling * way%answer(2) * pull(1) - way%across * way%along(1) * way%along(2)
-        by_q(1, 2) = coupling * way%answer(1) * pull(2) - way%across * way%along(1) * way%along(2)
-        by_q(2, 2) = coupling * way%answer(2) * pull(2) + way%across * way%along(1)**2
+        new%dissipation = min(old%dissipation + mean * slid%slip * way%work_ratio, largest)
+        by_pressure(1) = coupling * by_p * way%response(1)
+        by_pressure(2) = coupling * by_p * way%response(2)
+        by_q(1, 1) = coupling * way%response(1) * pull(1) + way%across * way%along(2)**2
+        by_q(2, 1) = coupling * way%response(2) * pull(1) - way%across * way%along(1) * way%along(2)
+        by_q(1, 2) = coupling * way%response(1) * pull(2) - way%across * way%along(1) * way%along(2)
+        by_q(2, 2) = coupling * way%response(2) * pull(2) + way%across * way%along(1)**2
     end subroutine slip_update
 
     !> Along the trial traction, as every isotropic surface slides (squeeze = 1), and an orthotropic
@@ -380,25 +380,26 @@ contains
 
         inverse = 1.0_wp / distance
         way%stiffness = alpha_t
-        way%lever = 1.0_wp
-        way%turn = 0.0_wp
+        way%work_ratio = 1.0_wp
+        way%cross_stiffness = 0.0_wp
         if (abs(squeeze - 1.0_wp) > 0.0_wp) then
             inverse = 1.0_wp / hypot(q(1), q(2))
             way%stiffness = alpha_t * distance * inverse
-            way%lever = alpha_t / way%stiffness
-            way%turn = (q(1) * inverse) * (q(2) * inverse) * (squeeze**2 - 1.0_wp) * way%lever
+            way%work_ratio = alpha_t / way%stiffness
+            way%cross_stiffness = (q(1) * inverse) * (q(2) * inverse) * (squeeze**2 - 1.0_wp) &
+                * way%work_ratio
         end if
         call return_map(surface, alpha_t * distance, way%stiffness, pressure, dt, start, slid, &
             status)
         if (status < 0) return
-        way%across = slid%resistance * way%lever * inverse
-        way%turn = way%turn * way%across
+        way%across = slid%resistance * way%work_ratio * inverse
+        way%cross_stiffness = way%cross_stiffness * way%across
         way%tau(1) = way%across * q(1)
         way%tau(2) = way%across * q(2)
         way%along(1) = q(1) * inverse
         way%along(2) = q(2) * inverse
-        way%answer(1) = way%along(1)
-        way%answer(2) = way%along(2)
+        way%response(1) = way%along(1)
+        way%response(2) = way%along(2)
     end subroutine slide_radially
 
 end module friction_contact

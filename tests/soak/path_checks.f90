@@ -161,7 +161,7 @@ contains
         type(load_case), intent(in) :: this
         real(qp), intent(in) :: tau(2), slid(2), equivalent, trial
         real(dp), intent(inout) :: residual
-        real(qp) :: along(2), s, error, worst, work, gained, doubt(2), misfit(2), scale(2), own, &
+        real(qp) :: along(2), s, error, worst, work, gained, blur(2), misfit(2), scale(2), own, &
             strength_scale, normal(2)
 
         kind_ = 0
@@ -194,7 +194,7 @@ contains
             error = 4.0_qp * eps * t%new(7)
         end if
         kind_ = k_equation
-        call evolve(t%new(5), t%new(6), s, misfit, scale, doubt)
+        call evolve(t%new(5), t%new(6), s, misfit, scale, blur)
         if (creeps(mat%law) .and. s < max(1.0e-90_qp * mat%own(3), 100.0_qp * error)) then
             misfit = 0.0_qp
         end if
@@ -211,7 +211,7 @@ contains
             residual = max(residual, real(worst, dp))
             if (worst > 64.0_qp * eps) return
         end if
-        worst = maxval(abs(misfit) / (scale + doubt / eps))
+        worst = maxval(abs(misfit) / (scale + blur / eps))
         residual = max(residual, real(worst, dp))
         if (worst > 128.0_qp * eps) return
         kind_ = 0
@@ -219,10 +219,10 @@ contains
     contains
 
         !> Misfits of the evolution laws, and how much round-off of state and slip changes them.
-        subroutine evolve(mu_, r_, s_, misfit, scale, doubt)
+        subroutine evolve(mu_, r_, s_, misfit, scale, blur)
             real(dp), intent(in) :: mu_, r_
             real(qp), intent(in) :: s_
-            real(qp), intent(out) :: misfit(2), scale(2), doubt(2)
+            real(qp), intent(out) :: misfit(2), scale(2), blur(2)
             real(qp) :: mu, r, plus(2), minus(2), unused(2)
 
             mu = mu_
@@ -230,17 +230,17 @@ contains
             call evolution_misfits(mat, this, s_, mu, r, misfit, scale)
             call evolution_misfits(mat, this, s_ + error, mu, r, plus, unused)
             call evolution_misfits(mat, this, max(s_ - error, 0.0_qp), mu, r, minus, unused)
-            doubt = abs(plus - misfit) + abs(minus - misfit)
+            blur = abs(plus - misfit) + abs(minus - misfit)
             call evolution_misfits(mat, this, s_, mu, r * (1.0_qp + eps), plus, unused)
             call evolution_misfits(mat, this, s_, mu, r * (1.0_qp - eps), minus, unused)
-            doubt = doubt + abs(plus - misfit) + abs(minus - misfit)
-            if (mat%law == 1 .and. mat%form == 3) call vary_start(mu, r, s_, misfit, doubt)
+            blur = blur + abs(plus - misfit) + abs(minus - misfit)
+            if (mat%law == 1 .and. mat%form == 3) call vary_start(mu, r, s_, misfit, blur)
         end subroutine evolve
 
         !> Where sliding starts is a small difference, if the traction turns back.
-        subroutine vary_start(mu, r, s_, misfit, doubt)
+        subroutine vary_start(mu, r, s_, misfit, blur)
             real(qp), intent(in) :: mu, r, s_, misfit(2)
-            real(qp), intent(inout) :: doubt(2)
+            real(qp), intent(inout) :: blur(2)
             type(load_case) :: varied
             real(qp) :: plus(2), unused(2)
 
@@ -250,7 +250,7 @@ contains
                 * this%q_scale)))
             if (this%r_start >= this%r) varied%r_start = min(1.0_qp, this%r_start * (1.0_qp + eps))
             call evolution_misfits(mat, varied, s_, mu, r, plus, unused)
-            doubt = doubt + abs(plus - misfit)
+            blur = blur + abs(plus - misfit)
         end subroutine vary_start
 
     end function sliding_fault
