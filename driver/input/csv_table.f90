@@ -87,7 +87,8 @@ contains
             return
         end if
         call find_header(text, requests, form, read_in)
-        if (size(read_in%faults) > 0 .or. count(form%places > 0) < min(2, size(requests))) return
+        if (size(read_in%faults) > 0) return
+        if (count(form%places > 0) < min(2, size(requests))) return
         deallocate (read_in%values, read_in%lines)
         allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
         rows = 0

@@ -203,7 +203,7 @@ contains
     subroutine take_number(token, allowed, value, sound, why)
         type(value_token), intent(in) :: token
         type(rule), intent(in) :: allowed
-        real(dp), intent(out) :: value
+        real(dp), intent(out) :: value                       !! 0 where there is no number
         logical, intent(inout) :: sound                      !! false where there is no number
         character(len=:), allocatable, intent(out) :: why    !! it is refused; or empty
         logical :: is_number, too_small
@@ -222,7 +222,9 @@ contains
             why = 'must be ' // allowed%text
             return
         end if
-        sound = sound .and. len(why) == 0
+        if (len(why) == 0) return
+        value = 0.0_dp   ! no later rule is asked of what is no number
+        sound = .false.
     end subroutine take_number
 
     !> The value of a key that takes one.
