@@ -34,8 +34,8 @@ module linear_stability
     type :: disturbance
         real(dp) :: extension = 0.0_dp   !! of the drive spring [L]
         real(dp) :: velocity = 0.0_dp    !! of the block; no state without mass [L/T]
-        real(dp) :: traction = 0.0_dp    !! of the contact; a state where it depends on the slip
-                                         !! rate and has a spring [F/L^2]
+        real(dp) :: traction = 0.0_dp    !! of the contact spring; a state where friction depends on
+                                         !! the slip rate, or beside a damper [F/L^2]
         real(dp) :: memory(2) = 0.0_dp   !! of the law
         real(dp) :: away = 0.0_dp        !! of a block that moves across the interface [L]
         real(dp) :: rising = 0.0_dp      !! its velocity [L/T]
@@ -104,16 +104,20 @@ contains
         end associate
     end subroutine judge
 
-    !> Does friction fall faster with slip than the contact spring unloads? Then it jumps, whatever
-    !> the block does.
+    !> Does friction fall faster with slip than the contact spring unloads, or with the slip rate
+    !> than a damper beside it? Then it jumps, whatever the block does.
     pure function snaps_back(this, contact) result(snaps)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         logical :: snaps
 
-        snaps = .not. contact%follows_velocity .and. .not. depends_on_rate(contact) .and. &
-            this%props(prop_alpha_t) + dot_product(contact%by_memory, contact%rate_by_rate) &
-            <= 0.0_dp
+        snaps = .false.
+        if (contact%damper > 0.0_dp) then
+            snaps = contact%damper + contact%by_rate <= 0.0_dp
+        else if (.not. (contact%follows_velocity .or. depends_on_rate(contact))) then
+            snaps = this%props(prop_alpha_t) + dot_product(contact%by_memory, &
+                contact%rate_by_rate) <= 0.0_dp
+        end if
     end function snaps_back
 
     pure function depends_on_rate(contact) result(depends)
@@ -179,14 +183,14 @@ contains
         d = disturbance(all(1), all(2), all(3), all(4:5), all(6), all(7))
     end function unpacked
 
-    !> Is the traction a state of its own?
+    !> Is the traction of the contact spring a state of its own?
     pure function states_traction(this, contact) result(yes)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         logical :: yes
 
-        yes = .not. contact%follows_velocity .and. depends_on_rate(contact) &
-            .and. .not. in_series(this)
+        yes = contact%damper > 0.0_dp .or. (.not. contact%follows_velocity .and. &
+            depends_on_rate(contact) .and. .not. in_series(this))
     end function states_traction
 
     pure function states(this, contact) result(are)
@@ -196,7 +200,8 @@ contains
         logical :: sprung
 
         sprung = .not. contact%follows_velocity
-        are = [.not. in_series(this) .or. .not. sprung .or. depends_on_rate(contact), &
+        are = [.not. in_series(this) .or. .not. sprung .or. depends_on_rate(contact) .or. &
+            contact%damper > 0.0_dp, &
             this%mass > 0.0_dp, states_traction(this, contact), &
             contact%remembered >= 1, contact%remembered >= 2, this%across%free(), &
             this%across%free()]
@@ -257,6 +262,9 @@ contains
                 if (.not. this%mass > 0.0_dp) v = (pull - s * at_rest) / (c + s * contact%by_rate)
                 slip = v
                 traction = contact%by_rate * slip + at_rest
+            else if (contact%damper > 0.0_dp) then
+                call damped_motion(this, contact, d%traction, pull, at_rest, v, slip, failed)
+                traction = contact%by_rate * slip + at_rest
             else if (depends_on_rate(contact)) then
                 traction = d%traction
                 if (in_series(this)) traction = pull / s
@@ -279,6 +287,32 @@ contains
         end associate
         motion = [v, slip, traction]
     end subroutine contact_motion
+
+    !> Velocity and slip rate of a contact with a damper beside its spring.
+    pure subroutine damped_motion(this, contact, sprung, pull, at_rest, v, slip, failed)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        real(dp), intent(in) :: sprung    !! traction of the spring [F/L^2]
+        real(dp), intent(in) :: pull      !! of the drive spring [F]
+        real(dp), intent(in) :: at_rest   !! traction without slip [F/L^2]
+        real(dp), intent(inout) :: v      !! known for a block with a mass [L/T]
+        real(dp), intent(out) :: slip     !! slip rate [L/T]
+        logical, intent(out) :: failed    !! no velocity follows
+        real(dp) :: both, part, drag
+
+        slip = 0.0_dp
+        both = contact%damper + contact%by_rate
+        failed = .not. abs(both) > 0.0_dp
+        if (failed) return
+        part = contact%by_rate / both
+        if (.not. this%mass > 0.0_dp) then
+            drag = this%damping + this%area * part * contact%damper
+            failed = .not. abs(drag) > 0.0_dp
+            if (failed) return
+            v = (pull - this%area * (part * (sprung - at_rest) + at_rest)) / drag
+        end if
+        slip = (sprung + contact%damper * v - at_rest) / both
+    end subroutine damped_motion
 
     !> Eigenvalues, the largest real part first. Each is improved by its two eigenvectors: what is
     !> left of round-off is that of the matrix entry by entry, however far its numbers are apart.

@@ -25,6 +25,7 @@ module steady_sliding
         real(dp), allocatable :: props(:)            !! constants of the friction routine
         type(sliding_surface), private :: surface    !! made of these
         integer, private :: status = friction_ok     !! negative if they do not fit together
+        real(dp), private :: damper = 0.0_dp         !! beside the contact spring [F T/L^3]
         real(dp), private :: bounds(2) = 0.0_dp      !! of a coefficient that the law remembers [-]
         character(len=:), allocatable :: problem     !! why there can be no steady sliding; or empty
     contains
@@ -44,6 +45,8 @@ module steady_sliding
         logical :: capped = .false.            !! the shear cap holds the traction
         logical :: follows_velocity = .false.  !! s' is the block's velocity: without a contact
                                                !! spring, or under friction that drops at once
+        real(dp) :: damper = 0.0_dp            !! beside the contact spring; then s' follows from the
+                                               !! balance of both with the law [F T/L^3]
         integer :: remembered = 0              !! size of y
         real(dp) :: by_rate = 0.0_dp, by_memory(2) = 0.0_dp, by_pressure = 0.0_dp
         real(dp), dimension(2) :: rate_by_rate = 0.0_dp, rate_by_pressure = 0.0_dp, &
@@ -200,6 +203,7 @@ contains
         call read_surface(self%props, self%surface, self%status)
         known = friction_facts(self%props)
         self%bounds = [known%kinetic_coefficient, known%largest_coefficient]
+        self%damper = known%damping
     end subroutine take_constants
 
     !> Where a constant of the law stands; 0 for another key.
@@ -232,7 +236,9 @@ contains
         law%rate = abs(this%velocity)
         law%pressure = this%normal
         associate (traits => this%surface%traits)
-            contact%follows_velocity = this%rigid .or. traits%onset == onset_drops
+            if (.not. this%rigid) contact%damper = this%damper
+            contact%follows_velocity = this%rigid .or. (traits%onset == onset_drops &
+                .and. .not. contact%damper > 0.0_dp)
             contact%remembered = merge(2, traits%memory / 2, traits%memory == 1)
             call settle_memory(this%bounds, law, contact%remembered, problem)
             if (len(problem) > 0) return

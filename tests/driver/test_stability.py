@@ -267,6 +267,31 @@ class OtherLaws(Stability):
             self.assert_near(row['friction'], steady, 1e-13)
             self.assert_near(row['critical_stiffness'], -10 * slope / d_c * (1 + mass * velocity**2 / (10 * direct * d_c)))
 
+    def test_a_damper_beside_the_contact_spring(self):
+        """Spring and damper in parallel, in series with the surface: alpha u + eta v = (N/D + eta) s', u' = v - s'."""
+        alpha, eta = 40.0, 0.7
+        for law, mass in itertools.product(('coulomb', 'static_kinetic', 'rate_and_state'), (0.3, 0.0)):
+            constants = {'coulomb': dict(mu=0.3), 'static_kinetic': dict(mu_s=0.4, mu_k=0.3, d_c=0.5),
+                         'rate_and_state': dict(a=0.05, b=0.09, d_c=0.3, v0=0.5, f0=0.5)}[law]
+            damping = 0.9
+            row, = self.told(namelist({('friction', 'law'): f"'{law}'", ('friction', 'alpha_t'): repr(alpha), ('friction', 'eta_t'): repr(eta),
+                                **{('friction', key): repr(value) for key, value in constants.items()}, ('slider', 'mass'): repr(mass),
+                                ('slider', 'damping'): repr(damping), ('slider', 'stiffness'): '3'},
+                               [('friction', key) for key in ('mu_s', 'mu_k', 'kappa', 'xi', 'm') if key not in constants]))
+            part = 10 * Fraction(math.tanh(float(row['friction']) / 0.05))
+            surface, memory = {'coulomb': (exact(0), exact(1)), 'static_kinetic': (exact(-10 * 0.1 * 0.5 * math.exp(-0.5)), exact(1)),
+                               'rate_and_state': (total(product([part * Fraction(0.05)], exact(1, 1 / Fraction(0.3))),
+                                                        [-part * Fraction(0.09) / Fraction(0.3)]), exact(1, 1 / Fraction(0.3)))}[law]
+            dynamic = exact(mass, damping, 3.0)
+            self.assert_roots(total(
+                product(dynamic, total(product(total(surface, product([Fraction(eta)], memory)), exact(1, 0)), product([Fraction(alpha)], memory))),
+                product(surface, exact(1, 0), exact(eta, alpha))))
+
+    def test_cohesion_stands_beside_friction(self):
+        row = self.told(self.law('static_kinetic', {'mu_s': 0.4, 'mu_k': 0.2, 'd_c': 0.1, 'cohesion': 3.0}, damping=0.1))[0]
+        self.assert_near(row['friction'], 0.2 + 0.2 * math.exp(-0.1) + 0.3, 1e-14)
+        self.assert_near(row['critical_damping'], 10 * 0.2 * 0.1 * math.exp(-0.1))
+
     def test_at_a_shear_cap_friction_is_constant(self):
         row = self.told(namelist({('friction', 'tau_max'): '1.5', ('slider', 'damping'): '0.02'}))[0]
         self.assertEqual(row['stability'], 'stable')
