@@ -45,8 +45,8 @@ module steady_sliding
         logical :: capped = .false.            !! the shear cap holds the traction
         logical :: follows_velocity = .false.  !! s' is the block's velocity: without a contact
                                                !! spring, or under friction that drops at once
-        real(dp) :: damper = 0.0_dp            !! beside the contact spring; then s' follows from the
-                                               !! balance of both with the law [F T/L^3]
+        real(dp) :: damper = 0.0_dp            !! beside the contact spring; then s' follows from
+                                               !! the balance of both with the law [F T/L^3]
         integer :: remembered = 0              !! size of y
         real(dp) :: by_rate = 0.0_dp, by_memory(2) = 0.0_dp, by_pressure = 0.0_dp
         real(dp), dimension(2) :: rate_by_rate = 0.0_dp, rate_by_pressure = 0.0_dp, &

@@ -106,9 +106,10 @@ contains
             if (run%mass > 0.0_dp) self%natural(velocity) = force / sqrt(stiffness * run%mass)
             self%natural(elastic) = force / (run%area * eq%alpha)
             self%natural(memory) = 1.0_dp
-            if (eq%surface%traits%weight * run%drive%largest_normal() > 0.0_dp) &
+            if (eq%surface%traits%weight * run%drive%largest_normal() > 0.0_dp) then
                 self%natural(memory) = force / (run%area * run%drive%largest_normal() &
-                * eq%surface%traits%weight)
+                    * eq%surface%traits%weight)
+            end if
             self%natural(ratio) = 1.0_dp
             if (eq%surface%traits%stiff) self%natural = self%natural * stiff_sizes
             self%weights = 1.0_dp / (self%rtol * self%natural)
