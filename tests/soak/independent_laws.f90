@@ -269,7 +269,7 @@ contains
         type(material), intent(in) :: mat
         real(qp), intent(in) :: v
         real(qp) :: ln
-        real(qp) :: f_lv, f_ss, g, psi, x
+        real(qp) :: f_lv, f_ss, psi, x
 
         associate (a => mat%own(1), b => mat%own(2), v0 => mat%own(4), f0 => mat%own(5), &
             f_w => mat%own(6), n => mat%own(8))
@@ -280,19 +280,22 @@ contains
                 f_lv = a * asinh(exp(x))
             end if
             x = n * log(v / mat%own(7))
-            if (x > 100.0_qp) then
-                g = mat%own(7) / v
-            else
-                g = (1.0_qp + exp(x))**(-1.0_qp / n)
-            end if
-            f_ss = max(f_w + (f_lv - f_w) * g, 1.0e-100_qp * a)
-            if (x < -70.0_qp) f_ss = max(f_lv * g + f_w * exp(x) / n, 1.0e-100_qp * a)
+            x = max(x, 0.0_qp) + log_of_1_and(exp(-abs(x)))   ! -n ln(G)
+            f_ss = max(f_lv * exp(-x / n) + f_w * ((x / n) * mean_decay(x / n)), 1.0e-100_qp * a)
             psi = f_ss / a
             if (psi < 100.0_qp) psi = log(sinh(psi)) + log(2.0_qp)
             psi = a * (psi + log(v0 / v))
             ln = (psi - f0) / b + log(mat%own(3) / v0)
         end associate
     end function heated
+
+    !> ln(1 + t), without cancellation where t is small.
+    function log_of_1_and(t) result(ln)
+        real(qp), intent(in) :: t   !! 0 to 1
+        real(qp) :: ln
+
+        ln = 2.0_qp * atanh(t / (2.0_qp + t))
+    end function log_of_1_and
 
     !> Misfits of the discrete evolution laws for the state `new` after the slip s, zero for none:
     !> of the friction coefficient, and of the internal variable, with the scales of their terms.
@@ -312,9 +315,9 @@ contains
             call ratio_misfit(mat, this%r_start, s, min(r, 1.0_qp), misfit(2), scale(2))
         case (4, 7, 8)
             x = ln_theta(mat, this, s)
-            misfit(2) = log(r) - min(x, log(largest))
-            if (mat%law == 7) misfit(2) = log(r) - max(x, log(least_state * mat%own(3) &
-                / mat%own(4)))
+            misfit(2) = x
+            if (mat%law == 7) misfit(2) = max(x, log(least_state * mat%own(3) / mat%own(4)))
+            misfit(2) = log(r) - min(misfit(2), log(largest))
             scale(2) = 1.0_qp + abs(x) + abs(log(this%r)) + abs(log(this%dt))
             misfit(1) = mu - viscous(mat, this, s, x, scale(1))
         case (5)
