@@ -19,7 +19,7 @@ module friction_flash_heating_law
     use friction_flash_heating_core, only : kept_share, least_ratio, steady_ratio, &
         steady_ratio_slope, weak_part
     use friction_kinds, only : wp
-    use friction_law, only : law_traits, unbounded
+    use friction_law, only : law_traits
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         name_length, positive
     use friction_rate_state_core, only : asinh_exp, decayed_part, mean_decay, slope_asinh_exp
@@ -40,7 +40,7 @@ module friction_flash_heating_law
         procedure, nopass :: constants
         procedure :: traits
         procedure :: steady_shift
-        procedure :: shift_bounds
+        procedure :: steady_bounds
     end type flash_heating_law
 
     !> Its own constants; in `props` they stand from place 4 on.
@@ -122,19 +122,29 @@ contains
         class(flash_heating_law), intent(in) :: self
         real(wp), intent(in) :: ln_v
         real(wp), intent(out) :: shift, by_ln_v
+        real(wp) :: growth
+
+        call shift_and_growth(self, ln_v, shift, growth)
+        by_ln_v = self%a / self%b * (growth - u_slope(self))
+    end subroutine steady_shift
+
+    !> The shift, and what its derivative comes from: that of ln sinh(f_ss/a) by ln(v).
+    pure subroutine shift_and_growth(self, ln_v, shift, growth)
+        class(flash_heating_law), intent(in) :: self
+        real(wp), intent(in) :: ln_v
+        real(wp), intent(out) :: shift, growth
         type(steady_sliding) :: steady
-        real(wp) :: w, growth, y, part
+        real(wp) :: w, y, part
 
         steady = sliding_at(self, ln_v)
         w = self%f_w / self%a
         y = steady_ratio(steady%low, w, steady%g, steady%lost)
         part = decayed_part(y, exp(-y))
-        growth = steady_ratio_slope(steady%low, slope_asinh_exp(steady%u) * u_slope(self), w, &
-            steady%g, steady%h)
+        growth = (2.0_wp - part) / part * steady_ratio_slope(steady%low, &
+            slope_asinh_exp(steady%u) * u_slope(self), w, steady%g, steady%h)
         if (w * steady%lost + steady%low * steady%g < y) growth = 0.0_wp   ! at its end
         shift = self%a / self%b * (y + log(0.5_wp * part) - steady%u)
-        by_ln_v = self%a / self%b * ((2.0_wp - part) / part * growth - u_slope(self))
-    end subroutine steady_shift
+    end subroutine shift_and_growth
 
     pure function sliding_at(self, ln_v) result(steady)
         class(flash_heating_law), intent(in) :: self
@@ -161,34 +171,40 @@ contains
         slope = 1.0_wp - self%b / self%a
     end function u_slope
 
-    !> Rigorous bounds between two slip rates: of the shift's derivative by ln(v), once by the
+    !> Bounds, between two slip rates, of the growth of ln sinh(f_ss/a) with ln(v), once by the
     !> factors of
     !>
-    !>     (b/a) d(shift)/d(ln v) = u' (G C - 1) + coth(y) G h (w - y_LV),   C = tanh(y_LV)/tanh(y)
+    !>     growth = u' G C + coth(y) G h (w - y_LV),   C = tanh(y_LV)/tanh(y)
     !>
     !> at the ends, which is close where these are, and once for all rates up to the larger one; the
-    !> closer of the two counts. docs/theory.md, section 12.
-    pure subroutine shift_bounds(self, ln_v, shift, by_ln_v)
+    !> closer of the two counts. From them bounds of ln(theta/d_c) in steady sliding, whose
+    !> derivative is (a/b) (growth - 1). docs/theory.md, section 12.
+    pure subroutine steady_bounds(self, ln_v, ln_theta, growth)
         class(flash_heating_law), intent(in) :: self
         real(wp), intent(in) :: ln_v(2)
-        real(wp), intent(out) :: shift(2), by_ln_v(2)
-        real(wp) :: ends(2), slopes(2), near(2), all_rates(2)
+        real(wp), intent(out) :: ln_theta(2), growth(2)
+        real(wp) :: ends(2), at_ends(2), near(2), all_rates(2), by_ln_v(2), width, gained
 
-        call self%steady_shift(ln_v(1), ends(1), slopes(1))
-        call self%steady_shift(ln_v(2), ends(2), slopes(2))
-        near = slope_between(self, sliding_at(self, ln_v(1)), sliding_at(self, ln_v(2)))
-        all_rates = slope_below(self, ln_v)
-        by_ln_v(1) = min(max(near(1), all_rates(1)), slopes(1), slopes(2))
-        by_ln_v(2) = max(min(near(2), all_rates(2)), slopes(1), slopes(2))
-        if (by_ln_v(1) >= 0.0_wp .or. by_ln_v(2) <= 0.0_wp) then
-            shift = [minval(ends), maxval(ends)]
-        else
-            shift = ends(1) + by_ln_v * (ln_v(2) - ln_v(1))
-            shift(1) = max(shift(1), min(ends(2), 0.0_wp))
-        end if
-    end subroutine shift_bounds
+        call shift_and_growth(self, ln_v(1), ends(1), at_ends(1))
+        call shift_and_growth(self, ln_v(2), ends(2), at_ends(2))
+        near = growth_between(self, sliding_at(self, ln_v(1)), sliding_at(self, ln_v(2)))
+        all_rates = growth_below(self, ln_v)
+        growth(1) = min(max(near(1), all_rates(1)), at_ends(1), at_ends(2))
+        growth(2) = max(min(near(2), all_rates(2)), at_ends(1), at_ends(2))
+        ends = ends - ln_v
+        ln_theta = [minval(ends), maxval(ends)]
+        by_ln_v = self%a / self%b * (growth - 1.0_wp)
+        if (by_ln_v(1) >= 0.0_wp .or. by_ln_v(2) <= 0.0_wp) return
+        ! Straight lines from both ends meet below and above.
+        width = ln_v(2) - ln_v(1)
+        gained = ends(2) - ends(1)
+        near = (by_ln_v([2, 1]) * width - gained) / (by_ln_v([2, 1]) - by_ln_v)   ! where
+        near = ends(1) + by_ln_v * max(0.0_wp, min(near, width))
+        ln_theta = [min(near(1), ln_theta(1)), max(near(2), ln_theta(2))]
+        ln_theta(1) = max(ln_theta(1), min(ends(2), -ln_v(2)))
+    end subroutine steady_bounds
 
-    pure function slope_between(self, first, last) result(bounds)
+    pure function growth_between(self, first, last) result(bounds)
         class(flash_heating_law), intent(in) :: self
         type(steady_sliding), intent(in) :: first, last   !! at the smaller and the larger rate
         real(wp) :: bounds(2)
@@ -199,25 +215,25 @@ contains
         corners = steady_ratio([low, low], w, [first%g, first%g, last%g, last%g], &
             [first%lost, first%lost, last%lost, last%lost])   ! it is bilinear
         y = [minval(corners), maxval(corners)]
-        bounds = [-unbounded, unbounded]
-        if (y(1) <= least_ratio) return
+        bounds = 0.0_wp
+        if (y(2) <= least_ratio) return   ! it is at its end
         part = decayed_part(y, exp(-y))
         coth = (2.0_wp - part) / part   ! the first is the larger one
         share = tanh(low) * coth([2, 1]) * [last%g, first%g]
         share = min(share, 1.0_wp)
         if (u_slope(self) < 0.0_wp) share = share([2, 1])
-        bounds = u_slope(self) * (share - 1.0_wp)
+        bounds = u_slope(self) * share
         pull = w - low([2, 1])
         bounds(1) = bounds(1) + pull(1) * merge(coth(2) * (last%g * first%h), &
             coth(1) * (first%g * last%h), pull(1) > 0.0_wp)
         bounds(2) = bounds(2) + pull(2) * merge(coth(1) * (first%g * last%h), &
             coth(2) * (last%g * first%h), pull(2) > 0.0_wp)
-        bounds = self%a / self%b * bounds
-    end function slope_between
+        if (y(1) <= least_ratio) bounds = [min(bounds(1), 0.0_wp), max(bounds(2), 0.0_wp)]
+    end function growth_between
 
     !> G C is between 0 and 1; G h (y_LV - w) is largest at v_w, or at the end; coth(y) is below
     !> 1 + 1/y.
-    pure function slope_below(self, ln_v) result(bounds)
+    pure function growth_below(self, ln_v) result(bounds)
         class(flash_heating_law), intent(in) :: self
         real(wp), intent(in) :: ln_v(2)
         real(wp) :: bounds(2)
@@ -230,10 +246,9 @@ contains
         at_v_w = sliding_at(self, min(log(self%v_w), ln_v(2)))
         heated = min(1.0_wp, 2.0_wp * last%h)
         most = max(0.0_wp, max(at_v_w%low, last%low) - w + max(0.0_wp, -u_slope(self)))
-        bounds(1) = min(u_slope(self), 0.0_wp) - u_slope(self) - heated * (most + 1.0_wp)
-        bounds(2) = max(u_slope(self), 0.0_wp) - u_slope(self)
+        bounds(1) = min(u_slope(self), 0.0_wp) - heated * (most + 1.0_wp)
+        bounds(2) = max(u_slope(self), 0.0_wp)
         if (min(first%low, last%low) < w) bounds(2) = bounds(2) + w * heated + self%n
-        bounds = self%a / self%b * bounds
-    end function slope_below
+    end function growth_below
 
 end module friction_flash_heating_law

@@ -66,7 +66,7 @@ module friction_rate_state_law
         procedure :: pressed
         procedure :: read_common
         procedure :: steady_shift => no_shift
-        procedure :: shift_bounds => no_shift_bounds
+        procedure :: steady_bounds => no_steady_bounds
     end type rate_state_law
 
     !> Its own constants; in `props` they stand from place 4 on.
@@ -87,6 +87,7 @@ module friction_rate_state_law
     !> direct effect.
     real(wp), parameter :: least_direct = 1.0e-12_wp
     real(wp), parameter :: most_pressing = 200.0_wp   !! of ln(theta) in an increment
+    real(wp), parameter :: ln_most_state = 690.0_wp   !! of theta, so that it stays a number
     real(wp), parameter :: least_state = 1.0e-250_wp   !! v0 theta/d_c of a shifted law ends there
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
@@ -314,7 +315,7 @@ contains
                 by_ln_slip = by_ln_slip - z * (left - mean)
                 if (presses(self, pressure)) by_pressing = -mean
             end if
-            theta = max(exp(ln_theta), tiny(theta))
+            theta = max(exp(min(ln_theta, ln_most_state)), tiny(theta))
             if (self%evolution == shifted) theta = max(theta, least_state * (self%d_c / self%v0))
         end if
     end subroutine evolve
@@ -349,17 +350,18 @@ contains
         by_ln_v = 0.0_wp
     end subroutine no_shift
 
-    !> Rigorous bounds of both between two slip rates. Instead of its least value the shift may be
-    !> bounded by what keeps `shift - ln(v)` right, which is needed at the larger rate.
-    pure subroutine no_shift_bounds(self, ln_v, shift, by_ln_v)
+    !> Rigorous bounds between two slip rates, of ln(theta) of steady sliding, and of how fast
+    !> ln sinh(mu/a) grows there: 1 + (b/a) d(ln theta)/d(ln v), which may be small although its
+    !> terms are large.
+    pure subroutine no_steady_bounds(self, ln_v, ln_theta, growth)
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: ln_v(2)       !! from, to
-        real(wp), intent(out) :: shift(2)     !! least, most
-        real(wp), intent(out) :: by_ln_v(2)   !! least, most
+        real(wp), intent(out) :: ln_theta(2)  !! least, most, less ln(d_c)
+        real(wp), intent(out) :: growth(2)    !! least, most, by ln(v)
 
-        shift = 0.0_wp
-        by_ln_v = 0.0_wp
-    end subroutine no_shift_bounds
+        ln_theta = [-ln_v(2), -ln_v(1)]
+        growth = 1.0_wp - self%b / self%a
+    end subroutine no_steady_bounds
 
     !> The factors of the slope
     !>
@@ -373,7 +375,7 @@ contains
         real(wp), intent(in) :: pressure, dt
         type(law_state), intent(in) :: old
         real(wp), intent(out) :: least, most
-        real(wp) :: from, y_first, e_low, e_high, grown, shrunk, high, low, s_high, s_low
+        real(wp) :: from, y_first, e_low, e_high, grown, shrunk, high, low, s_high, s_low, growth(2)
 
         from = max(first%slip, least_slip * self%d_c)
         y_first = first%state%mu / self%a
@@ -388,10 +390,19 @@ contains
         grown = max(0.0_wp, e_high * ((last%slip - from) / self%d_c))
         shrunk = max(0.0_wp, log(first%state%r) - log(last%state%r))
         if (self%evolution == shifted .or. self%alpha > 0.0_wp) shrunk = grown   ! it may have more
-        s_high = slope_of_asinh(last%state%mu / self%a, self%b / self%a * grown)
-        s_low = slope_of_asinh(y_first, -self%b / self%a * shrunk)
+        grown = self%b / self%a * grown
+        shrunk = self%b / self%a * shrunk
         low = self%a / last%slip - (self%b / self%d_c) * e_high
         high = self%a / from - (self%b / self%d_c) * e_low
+        if (self%evolution == shifted) then
+            growth = exponent_growth(self, [from, last%slip], dt, old%r)
+            grown = min(grown, max(0.0_wp, -growth(1)) * log(last%slip / from))
+            shrunk = min(shrunk, max(0.0_wp, -growth(1)) * log(last%slip / from))
+            low = max(low, self%a * growth(1) / merge(last%slip, from, growth(1) > 0.0_wp))
+            high = min(high, self%a * growth(2) / merge(from, last%slip, growth(2) > 0.0_wp))
+        end if
+        s_high = slope_of_asinh(last%state%mu / self%a, grown)
+        s_low = slope_of_asinh(y_first, -shrunk)
         least = pressure * low * merge(s_high, s_low, low < 0.0_wp)
         most = pressure * high * merge(s_high, s_low, high > 0.0_wp)
         if (first%slip < from) then
@@ -399,6 +410,35 @@ contains
             most = max(most, first%d_slip)
         end if
     end subroutine slopes
+
+    !> Bounds of dX/d(ln slip) between two slips of the slip law with a steady state of its own,
+    !>
+    !>     e^-x + (1 - e^-x) growth + (b/a) x e^-x pull,   pull = ln(theta_ss) - ln(theta_n)
+    !>
+    !> which stay close where the terms of `evolution_bounds` are large and cancel: far along, where
+    !> only `growth` is left, and for b far above a.
+    pure function exponent_growth(self, slip, dt, theta_n) result(bounds)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: slip(2)       !! between which slips, > 0 [L]
+        real(wp), intent(in) :: dt            !! > 0 [T]
+        real(wp), intent(in) :: theta_n       !! at the start of the increment, > 0 [T]
+        real(wp) :: bounds(2)                 !! least, most
+        real(wp) :: x(2), left(2), slipped(2), weight(2), ln_theta(2), growth(2), pull(2)
+
+        x = slip / self%d_c
+        left = exp(-x)
+        slipped = x * mean_decay(x, left)
+        weight = x * left   ! it has one peak, at 1
+        weight = [minval(weight), maxval(weight)]
+        if (x(1) < 1.0_wp .and. x(2) > 1.0_wp) weight(2) = exp(-1.0_wp)
+        weight = self%b / self%a * weight
+        call self%steady_bounds(log(slip) - log(dt), ln_theta, growth)
+        pull = ln_theta + log(self%d_c) - log(theta_n)
+        bounds(1) = minval(left + slipped * growth(1)) + pull(1) * merge(weight(1), weight(2), &
+            pull(1) > 0.0_wp)
+        bounds(2) = maxval(left + slipped * growth(2)) + pull(2) * merge(weight(2), weight(1), &
+            pull(2) > 0.0_wp)
+    end function exponent_growth
 
     !> The derivative of asinh(e^X), where that is y, after X has changed.
     pure function slope_of_asinh(y, change) result(slope)
@@ -427,7 +467,7 @@ contains
         real(wp), intent(in) :: dt             !! > 0 [T]
         real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
         real(wp), intent(out) :: e_low, e_high !! [-]
-        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), shift(2), by_ln_v(2), z
+        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), growth(2), by_ln_v(2), z
 
         z = 0.0_wp
         if (self%alpha > 0.0_wp) z = pressing(self, pressure)
@@ -447,10 +487,11 @@ contains
             e_low = mean(2)
             e_high = mean(1)
             if (self%evolution == shifted) then
-                call self%shift_bounds(log(slip) - log(dt), shift, by_ln_v)
-                pull = pull + shift([2, 1])
-                e_low = (1.0_wp - by_ln_v(2)) * merge(mean(2), mean(1), by_ln_v(2) < 1.0_wp)
-                e_high = (1.0_wp - by_ln_v(1)) * merge(mean(1), mean(2), by_ln_v(1) < 1.0_wp)
+                call self%steady_bounds(log(slip) - log(dt), pull, growth)
+                pull = pull([2, 1]) + log(self%d_c) - log(theta_n)
+                by_ln_v = self%a / self%b * (growth - 1.0_wp)
+                e_low = -by_ln_v(2) * merge(mean(2), mean(1), by_ln_v(2) < 0.0_wp)
+                e_high = -by_ln_v(1) * merge(mean(1), mean(2), by_ln_v(1) < 0.0_wp)
             end if
             e_low = e_low - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
             e_high = e_high - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
