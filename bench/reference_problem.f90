@@ -71,7 +71,7 @@ contains
             call turning_point(before, now, turn, found)
             if (found) peak = max(peak, turn%force)
             peak = max(peak, now%force)
-            call finder%follow(before, now, ended)
+            call finder%follow(before, now, .false., ended)
             if (size(ended) > 0) then
                 events = events + size(ended)
                 onset = ended(size(ended))%onset
