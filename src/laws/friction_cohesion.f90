@@ -11,7 +11,8 @@
 !> the cohesion alone.
 module friction_cohesion
     use friction_kinds, only : wp
-    use friction_law, only : below, law, law_state, law_traits, load_rates, sliding
+    use friction_law, only : below, law, law_state, load_rates, sliding
+    use friction_law_around, only : law_around
     use friction_law_constants, only : law_constant
     implicit none
     private
@@ -23,40 +24,20 @@ module friction_cohesion
         law_constant('cohesion', 'F/L^2', 'tangential traction that is carried without pressure', &
         lower=0.0_wp, optional=.true.)]
 
-    type, extends(law) :: cohesive_law
-        class(law), pointer :: inner   !! the law without cohesion
+    type, extends(law_around) :: cohesive_law
     contains
-        procedure :: virgin
-        procedure :: admits
         procedure :: rest
         procedure :: slide
         procedure :: slip_rate
         procedure :: state_rates
         procedure :: resistance_at
-        procedure :: traits
         procedure :: scale_of_terms
         procedure :: settle
         procedure :: slopes
-        procedure :: needs_time
         procedure :: solve
     end type cohesive_law
 
 contains
-
-    pure function virgin(self) result(state)
-        class(cohesive_law), intent(in) :: self
-        type(law_state) :: state
-
-        state = self%inner%virgin()
-    end function virgin
-
-    pure function admits(self, state) result(valid)
-        class(cohesive_law), intent(in) :: self
-        type(law_state), intent(in) :: state
-        logical :: valid
-
-        valid = self%inner%admits(state)
-    end function admits
 
     pure subroutine rest(self, traction, pressure, dt, old, new, strength)
         class(cohesive_law), intent(in) :: self
@@ -165,20 +146,6 @@ contains
         call cohesive_resistance(self%inner, self%cohesion, state, rate, pressure, resistance, &
             by_rate)
     end subroutine resistance_at
-
-    pure function traits(self)
-        class(cohesive_law), intent(in) :: self
-        type(law_traits) :: traits
-
-        traits = self%inner%traits()
-    end function traits
-
-    pure function needs_time(self) result(needs)
-        class(cohesive_law), intent(in) :: self
-        logical :: needs
-
-        needs = self%inner%needs_time()
-    end function needs_time
 
     !> The slip rate of a law that has a cohesion added to it: with none, that of the law.
     pure subroutine cohesive_slip_rate(inner, cohesion, state, load, rate, jumps)

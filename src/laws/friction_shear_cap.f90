@@ -7,7 +7,8 @@
 !> holds, the traction depends neither on the slip nor on the pressure.
 module friction_shear_cap
     use friction_kinds, only : wp
-    use friction_law, only : below, law, law_state, law_traits, load_rates, sliding
+    use friction_law, only : below, law_state, load_rates
+    use friction_law_around, only : law_around
     use friction_law_constants, only : law_constant
     implicit none
     private
@@ -19,42 +20,16 @@ module friction_shear_cap
         law_constant('tau_max', 'F/L^2', 'largest tangential traction; 0: none', lower=0.0_wp, &
         optional=.true.)]
 
-    type, extends(law) :: capped_law
-        class(law), pointer :: inner   !! the law without the cap
+    type, extends(law_around) :: capped_law
     contains
-        procedure :: virgin
-        procedure :: admits
         procedure :: rest
         procedure :: slide
         procedure :: slip_rate
-        procedure :: state_rates
         procedure :: resistance_at
-        procedure :: traits
         procedure :: slide_uncapped
-        procedure :: scale_of_terms
-        procedure :: settle
-        procedure :: slopes
-        procedure :: needs_time
-        procedure :: solve
-        procedure :: pressed
     end type capped_law
 
 contains
-
-    pure function virgin(self) result(state)
-        class(capped_law), intent(in) :: self
-        type(law_state) :: state
-
-        state = self%inner%virgin()
-    end function virgin
-
-    pure function admits(self, state) result(valid)
-        class(capped_law), intent(in) :: self
-        type(law_state), intent(in) :: state
-        logical :: valid
-
-        valid = self%inner%admits(state)
-    end function admits
 
     pure subroutine rest(self, traction, pressure, dt, old, new, strength)
         class(capped_law), intent(in) :: self
@@ -92,34 +67,6 @@ contains
         call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
     end subroutine slide_uncapped
 
-    pure function scale_of_terms(self, slid, dt, old) result(scale)
-        class(capped_law), intent(in) :: self
-        type(sliding), intent(in) :: slid
-        real(wp), intent(in) :: dt
-        type(law_state), intent(in) :: old
-        real(wp) :: scale
-
-        scale = self%inner%scale_of_terms(slid, dt, old)
-    end function scale_of_terms
-
-    pure subroutine settle(self, misfit, stiffness, pressure, answer)
-        class(capped_law), intent(in) :: self
-        real(wp), intent(in) :: misfit, stiffness, pressure
-        type(sliding), intent(inout) :: answer
-
-        call self%inner%settle(misfit, stiffness, pressure, answer)
-    end subroutine settle
-
-    pure subroutine slopes(self, first, last, pressure, dt, old, least, most)
-        class(capped_law), intent(in) :: self
-        type(sliding), intent(in) :: first, last
-        real(wp), intent(in) :: pressure, dt
-        type(law_state), intent(in) :: old
-        real(wp), intent(out) :: least, most
-
-        call self%inner%slopes(first, last, pressure, dt, old, least, most)
-    end subroutine slopes
-
     !> At the cap, the slip that keeps the traction there, or more where the law itself asks for it.
     !> Where its own strength is higher, the law has no say unless that falls with the slip rate.
     pure subroutine slip_rate(self, state, load, rate, jumps)
@@ -147,16 +94,6 @@ contains
         end if
     end subroutine slip_rate
 
-    pure function state_rates(self, state, load, slip_rate) result(rates)
-        class(capped_law), intent(in) :: self
-        type(law_state), intent(in) :: state
-        type(load_rates), intent(in) :: load
-        real(wp), intent(in) :: slip_rate
-        type(law_state) :: rates
-
-        rates = self%inner%state_rates(state, load, slip_rate)
-    end function state_rates
-
     pure subroutine resistance_at(self, state, rate, pressure, resistance, by_rate)
         class(capped_law), intent(in) :: self
         type(law_state), intent(in) :: state
@@ -168,38 +105,5 @@ contains
         resistance = self%tau_max
         by_rate = 0.0_wp
     end subroutine resistance_at
-
-    pure function traits(self)
-        class(capped_law), intent(in) :: self
-        type(law_traits) :: traits
-
-        traits = self%inner%traits()
-    end function traits
-
-    pure function needs_time(self) result(needs)
-        class(capped_law), intent(in) :: self
-        logical :: needs
-
-        needs = self%inner%needs_time()
-    end function needs_time
-
-    pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
-        class(capped_law), intent(in) :: self
-        real(wp), intent(in) :: trial, stiffness, pressure, dt
-        type(law_state), intent(in) :: old
-        type(sliding), intent(out) :: answer
-        logical, intent(out) :: solved
-
-        call self%inner%solve(trial, stiffness, pressure, dt, old, answer, solved)
-    end subroutine solve
-
-    pure function pressed(self, state, before, after) result(new)
-        class(capped_law), intent(in) :: self
-        type(law_state), intent(in) :: state
-        real(wp), intent(in) :: before, after
-        type(law_state) :: new
-
-        new = self%inner%pressed(state, before, after)
-    end function pressed
 
 end module friction_shear_cap
