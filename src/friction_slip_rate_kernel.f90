@@ -217,11 +217,11 @@ contains
         real(wp), parameter :: small = 1.0e-4_wp   !! the next error is below its fourth power
         real(wp), parameter :: sixth = 1.0_wp / 6.0_wp
         integer, parameter :: max_iterations = 12
-        real(wp), dimension(lanes) :: growth, part, moves
+        real(wp), dimension(lanes) :: growth, part, active
         real(wp) :: still, s, c, f, f1, d, v
         integer :: i, iteration
 
-        moves = 1.0_wp
+        active = 1.0_wp
         rates(:, 1) = 0.0_wp
         do iteration = 1, max_iterations
             call grow(block, growth, part)
@@ -235,16 +235,16 @@ contains
                 d = min(max(d, -0.9_wp * block%y(i)), block%t(i) - block%y(i))
                 v = slip_rate(kept(i, in_v0), growth(i), part(i) * (1.0_wp + 0.5_wp * d**2) &
                     + (2.0_wp - part(i)) * d * (1.0_wp + d**2 * sixth))
-                if (moves(i) <= 0.0_wp) v = rates(i, 1)
+                if (active(i) <= 0.0_wp) v = rates(i, 1)
                 rates(i, 1) = v
-                block%y(i) = block%y(i) + d * moves(i)
-                if (abs(d) <= small * min(block%y(i), 1.0_wp)) moves(i) = 0.0_wp
-                still = max(still, moves(i))
+                block%y(i) = block%y(i) + d * active(i)
+                if (abs(d) <= small * min(block%y(i), 1.0_wp)) active(i) = 0.0_wp
+                still = max(still, active(i))
             end do
             if (still <= 0.0_wp) return
         end do
         do i = 1, lanes
-            if (moves(i) > 0.0_wp) left(i) = 1
+            if (active(i) > 0.0_wp) left(i) = 1
         end do
     end subroutine solve
 

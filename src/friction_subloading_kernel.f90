@@ -148,7 +148,7 @@ contains
         integer(c_int), intent(inout) :: left(lanes)
         integer(c_int), intent(out) :: n_left
         type(slip_block) :: packed
-        real(wp), dimension(lanes) :: p, c, tau, r_n, moves
+        real(wp), dimension(lanes) :: p, c, tau, r_n, active
         integer :: place(lanes), n_slides, n_solved, i
 
         n_slides = 0
@@ -166,7 +166,7 @@ contains
             tau(i) = trial%tau(place(i))
             r_n(i) = trial%r(place(i))
         end do
-        call solve(n_solved, inc, p, c, tau, r_n, packed, moves)
+        call solve(n_solved, inc, p, c, tau, r_n, packed, active)
 
         slid%s = 0.0_wp
         slid%r = 1.0_wp
@@ -176,21 +176,21 @@ contains
             slid%r(place(i)) = packed%r(i)
             slid%log_r(place(i)) = packed%log_r(i)
         end do
-        n_left = int(sum(moves(:n_slides)), c_int)
+        n_left = int(sum(active(:n_slides)), c_int)
         if (n_left == 0) return
         do i = 1, n_slides
-            left(place(i)) = int(moves(i), c_int)
+            left(place(i)) = int(active(i), c_int)
         end do
     end subroutine find_slip
 
     !> Slip and R by the steps of module friction_subloading_core; a point that has settled stays
     !> where it is while others go on.
-    subroutine solve(n, inc, p, c, tau, r_n, packed, moves)
+    subroutine solve(n, inc, p, c, tau, r_n, packed, active)
         integer, intent(in) :: n
         type(increment), intent(in) :: inc
         real(wp), dimension(lanes), intent(in) :: p, c, tau, r_n   !! of the trial
         type(slip_block), intent(inout) :: packed
-        real(wp), intent(out) :: moves(lanes)   !! 1 for a point that has not converged, else 0
+        real(wp), intent(out) :: active(lanes)   !! 1 for a point that has not converged, else 0
         integer, parameter :: max_iterations = 7
         type(slip_task) :: task
         type(slip_guess) :: at
@@ -207,7 +207,7 @@ contains
             packed%s(i) = at%s
             packed%r(i) = at%r
             e(i) = at%e
-            moves(i) = 1.0_wp
+            active(i) = 1.0_wp
         end do
         do iteration = 1, max_iterations
             still = 0.0_wp   ! logarithms apart: their call needs the registers
@@ -223,11 +223,11 @@ contains
                 shared = 1.0_wp / (w * gain * at%r)   ! one division for three
                 inverse = inverses(gain * at%r * shared, w * at%r * shared, w * gain * shared)
                 move = chebyshev(task, at, log_r(i), inverse)
-                move%ds = move%ds * moves(i)
-                move%dr = move%dr * moves(i)
-                if (moves(i) > 0.0_wp) packed%log_r(i) = logarithm_after(move, inverse%r)
-                if (settled(task, at, move) <= 0.0_wp) moves(i) = 0.0_wp
-                still = max(still, moves(i))
+                move%ds = move%ds * active(i)
+                move%dr = move%dr * active(i)
+                if (active(i) > 0.0_wp) packed%log_r(i) = logarithm_after(move, inverse%r)
+                if (settled(task, at, move) <= 0.0_wp) active(i) = 0.0_wp
+                still = max(still, active(i))
                 at = moved(at, move)
                 packed%s(i) = at%s
                 packed%r(i) = at%r

@@ -169,7 +169,7 @@ contains
         integer, parameter :: max_iterations = 20
         type(search) :: now
         type(slip_guess) :: at
-        real(wp) :: moves(lanes), ms, dr, healing, still
+        real(wp) :: active(lanes), ms, dr, healing, still
         integer :: i, iteration
 
         call start_ratio(constants, cotangent, block, now)
@@ -178,9 +178,9 @@ contains
             block%mu_end(i) = coefficient(constants(i, c_mu_s), constants(i, c_mu_k), &
                 reserve(block%mu(i), constants(i, c_mu_s), constants(i, c_mu_k), healing), 1.0_wp &
                 / (1.0_wp + healing + constants(i, c_kappa) * block%slip(i)))
-            moves(i) = 1.0_wp
+            active(i) = 1.0_wp
         end do
-        if (.not. cotangent) moves = 0.0_wp
+        if (.not. cotangent) active = 0.0_wp
         do iteration = 1, max_iterations
             call measure(block%n, now)
             still = 0.0_wp
@@ -188,20 +188,20 @@ contains
                 ms = constants(i, c_m) * block%slip(i)
                 dr = ratio_gain(now%below(i), ms, now%bend) * ratio_lack(now%r(i), now%e(i), &
                     block%r(i), ms, now%above(i), now%below(i))
-                if (moves(i) > 0.0_wp) then
-                    if (abs(dr) <= small_step * min(now%r(i), now%e(i))) moves(i) = 0.0_wp
+                if (active(i) > 0.0_wp) then
+                    if (abs(dr) <= small_step * min(now%r(i), now%e(i))) active(i) = 0.0_wp
                     at = moved(slip_guess(0.0_wp, now%r(i), now%e(i)), slip_move(0.0_wp, dr, &
                         0.0_wp))
                     now%r(i) = at%r
                     now%e(i) = at%e
                 end if
-                still = max(still, moves(i))
+                still = max(still, active(i))
             end do
             if (still <= 0.0_wp) exit
         end do
         do i = 1, block%n
             block%r_end(i) = min(now%r(i), 1.0_wp)
-            block%left(i) = max(block%left(i), moves(i))
+            block%left(i) = max(block%left(i), active(i))
         end do
     end subroutine state_subloading_general
 

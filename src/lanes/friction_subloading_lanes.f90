@@ -177,7 +177,7 @@ contains
         real(wp), intent(in) :: dt
         type(slide_block), intent(inout) :: block   !! in: slip, out: mu_end, r_end
         integer, parameter :: max_iterations = 20
-        real(wp), dimension(lanes) :: r, e, log_r, moves
+        real(wp), dimension(lanes) :: r, e, log_r, active
         real(wp) :: ms, healing, c, still, dr
         type(slip_guess) :: at
         integer :: i, iteration
@@ -190,7 +190,7 @@ contains
             ms = constants(i, c_m) * block%slip(i)
             e(i) = (1.0_wp - block%r(i)) / (1.0_wp + ms)
             r(i) = max((block%r(i) + ms) / (1.0_wp + ms), least)
-            moves(i) = 1.0_wp
+            active(i) = 1.0_wp
         end do
         do iteration = 1, max_iterations
             do i = 1, block%n
@@ -200,16 +200,16 @@ contains
             do i = 1, block%n
                 at = slip_guess(0.0_wp, r(i), e(i))
                 call ratio_step(constants(i, c_m) * block%slip(i), block%r(i), log_r(i), at, dr)
-                if (moves(i) > 0.0_wp) r(i) = at%r
-                if (moves(i) > 0.0_wp) e(i) = at%e
-                if (abs(dr) <= small_step * min(at%r, at%e)) moves(i) = 0.0_wp
-                still = max(still, moves(i))
+                if (active(i) > 0.0_wp) r(i) = at%r
+                if (active(i) > 0.0_wp) e(i) = at%e
+                if (abs(dr) <= small_step * min(at%r, at%e)) active(i) = 0.0_wp
+                still = max(still, active(i))
             end do
             if (still <= 0.0_wp) exit
         end do
         do i = 1, block%n
             block%r_end(i) = min(r(i), 1.0_wp)
-            block%left(i) = max(block%left(i), moves(i))
+            block%left(i) = max(block%left(i), active(i))
         end do
     end subroutine state_subloading
 
