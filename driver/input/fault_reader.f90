@@ -7,41 +7,32 @@
 module fault_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : mix
-    use csv_table, only : column_request, csv => table, read_table
-    use fault_settings, only : fault_map, fault_plan
+    use fault_settings, only : fault_plan
     use friction_mod, only : friction_facts
+    use input_kind, only : refuse_other_verb
     use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
-    use namelist_parser, only : namelist_entry, value_token
+    use namelist_parser, only : namelist_entry
+    use profile_reader, only : joined, number_text, profile, put_number, read_map, take_profiles
     use unit_reader, only : read_units
     implicit none
     private
 
-    public :: is_fault_input, read_fault_plan
+    public :: read_fault_plan
 
     character(len=*), parameter :: group = 'fault'
-
-    !> A quantity that a file gives at nodes.
-    type :: profile
-        character(len=:), allocatable :: group, key   !! where the input names the file
-        type(fault_map) :: map                        !! of one quantity
-    end type profile
+    character(len=1), parameter :: axes(2) = ['x', 'z']
 
 contains
-
-    !> Is the input one of the fault?
-    function is_fault_input(file) result(yes)
-        type(namelist_file), intent(inout) :: file
-        logical :: yes
-
-        yes = file%has_group(group)
-    end function is_fault_input
 
     !> Takes the plan from a file; every fault is left in `file%faults`.
     subroutine read_fault_plan(file, plan)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(out) :: plan
+        logical :: refused
 
+        call refuse_other_verb('fault', file, refused)
+        if (refused) return
         call file%require_groups(['fault   ', 'friction', 'time    '])
         call read_surroundings(file, plan)
         call read_constants(file, plan)
@@ -93,7 +84,7 @@ contains
         real(dp) :: normal
         integer :: faults_before, i, k
 
-        call take_profiles(file, profiles)
+        call take_profiles(file, group, axes, profiles)
         faults_before = size(file%faults)
         call add_springs(file, plan)
         call join_nodes(profiles, x, z)
@@ -119,36 +110,6 @@ contains
         end associate
         plan%explicit = plan%rate_state
     end subroutine read_constants
-
-    !> Keys whose value is the name of a file.
-    subroutine take_profiles(file, profiles)
-        type(namelist_file), intent(inout) :: file
-        type(profile), allocatable, intent(out) :: profiles(:)
-        type(profile) :: this
-        integer :: i
-        logical :: sound
-
-        allocate (profiles(0))
-        do i = 1, size(file%entries)
-            if (size(file%entries(i)%values) /= 1) cycle
-            if (.not. names_file(file%entries(i)%values(1))) cycle
-            if (file%entries(i)%group /= 'friction' .and. .not. (file%entries(i)%group == group &
-                .and. file%entries(i)%key == 'normal_traction')) cycle
-            this%group = file%entries(i)%group
-            this%key = file%entries(i)%key
-            call read_map(file, this%group, this%key, [this%key], this%map, sound)
-            if (sound) profiles = [profiles, this]
-            file%entries(i)%faulty = .not. sound
-        end do
-    end subroutine take_profiles
-
-    pure function names_file(token) result(yes)
-        type(value_token), intent(in) :: token
-        logical :: yes
-
-        yes = .false.
-        if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
-    end function names_file
 
     !> The fault's contact springs: any stiff ones do, since slip is told from elastic displacement.
     subroutine add_springs(file, plan)
@@ -178,27 +139,13 @@ contains
         type(profile), intent(in) :: profiles(:)
         real(dp), intent(in) :: x, z
         real(dp) :: value(1)
-        integer :: i, j
+        integer :: j
 
         do j = 1, size(profiles)
             value = profiles(j)%map%at(x, z)
-            do i = 1, size(file%entries)
-                if (file%entries(i)%group /= profiles(j)%group &
-                    .or. file%entries(i)%key /= profiles(j)%key) cycle
-                file%entries(i)%values(1)%text = number_text(value(1))
-                file%entries(i)%values(1)%quoted = .false.
-            end do
+            call put_number(file, profiles(j)%group, profiles(j)%key, value(1))
         end do
     end subroutine set_values
-
-    pure function number_text(number) result(text)
-        real(dp), intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=32) :: buffer
-
-        write (buffer, '(es24.16e3)') number
-        text = trim(adjustl(buffer))
-    end function number_text
 
     subroutine tell_node(file, x, z)
         type(namelist_file), intent(inout) :: file
@@ -225,80 +172,6 @@ contains
         if (size(z) == 0) z = [0.0_dp]
     end subroutine join_nodes
 
-    !> Two increasing lists as one, each number once.
-    pure function joined(a, b) result(both)
-        real(dp), intent(in) :: a(:), b(:)
-        real(dp), allocatable :: both(:)
-        integer :: i
-
-        both = a
-        do i = 1, size(b)
-            if (any(abs(both - b(i)) <= 0.0_dp)) cycle
-            both = [pack(both, both < b(i)), b(i), pack(both, both > b(i))]
-        end do
-    end function joined
-
-    !> Reads the file that a key names: columns z, or x and z on a full grid, and `names`.
-    subroutine read_map(file, group_of_key, key, names, map, sound)
-        type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group_of_key, key
-        character(len=*), intent(in) :: names(:)
-        type(fault_map), intent(out) :: map
-        logical, intent(out) :: sound
-        type(column_request) :: requests(size(names) + 2)
-        type(csv) :: read_in
-        character(len=:), allocatable :: name
-        integer :: faults_before, column, i, j, k
-
-        faults_before = size(file%faults)
-        call file%get_text(group_of_key, key, name)
-        if (len(name) > 0) then
-            if (name(1:1) == '@') name = name(2:)
-        end if
-        sound = len(name) > 0
-        if (.not. sound) return
-        requests(1)%name = 'x'
-        requests(2)%name = 'z'
-        do i = 1, size(names)
-            requests(2 + i)%name = trim(names(i))
-        end do
-        call read_table(file%beside(name), requests, read_in)
-        do i = 1, size(read_in%faults)
-            call file%reject(group_of_key, key, read_in%faults(i)%text)
-        end do
-        if (size(file%faults) > faults_before) then
-            sound = .false.
-            return
-        end if
-        map%x = [0.0_dp]
-        if (read_in%column('x') > 0) map%x = joined([real(dp) ::], &
-            read_in%values(read_in%column('x'), :))
-        map%z = [0.0_dp]
-        if (read_in%column('z') > 0) then
-            map%z = joined([real(dp) ::], read_in%values(read_in%column('z'), :))
-        else
-            call file%reject(group_of_key, key, "its file has no column 'z'")
-        end if
-        if (size(map%x) * size(map%z) /= size(read_in%values, 2)) call file%reject(group_of_key, &
-            key, 'its file must have each node of a grid once: one row for each z, or for each ' &
-            // 'pair of an x and a z')
-        do j = 1, size(names)
-            if (read_in%column(trim(names(j))) == 0) call file%reject(group_of_key, key, &
-                "its file has no column '" // trim(names(j)) // "'")
-        end do
-        sound = size(file%faults) == faults_before
-        if (.not. sound) return
-        allocate (map%values(size(names), size(map%x), size(map%z)))
-        do k = 1, size(read_in%values, 2)
-            i = 1
-            if (read_in%column('x') > 0) i = count(map%x <= read_in%values(read_in%column('x'), k))
-            column = count(map%z <= read_in%values(read_in%column('z'), k))
-            do j = 1, size(names)
-                map%values(j, i, column) = read_in%values(read_in%column(trim(names(j))), k)
-            end do
-        end do
-    end subroutine read_map
-
     ! ---- the rest ----------------------------------------------------------------------------
 
     subroutine read_initial(file, plan)
@@ -317,10 +190,10 @@ contains
         else
             call file%require(group, 'initial_file')
             if (plan%rate_state) then
-                call read_map(file, group, 'initial_file', ['traction ', 'slip_rate'], &
+                call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
                     plan%initial, sound)
             else
-                call read_map(file, group, 'initial_file', ['traction'], plan%initial, sound)
+                call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, sound)
             end if
             if (.not. sound) return
             if (any(plan%initial%values(1, :, :) < 0.0_dp)) call file%reject(group, &

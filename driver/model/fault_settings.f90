@@ -1,20 +1,12 @@
 !> What a run of the planar fault is told to do (docs/fault.md).
 module fault_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use grid_map, only : map_on_grid
     use unit_names, only : units
     implicit none
     private
 
-    public :: fault_map, fault_plan
-
-    !> Quantities given at the nodes of a rectilinear grid on the fault; bilinear between them, and
-    !> constant beyond.
-    type :: fault_map
-        real(dp), allocatable :: x(:), z(:)         !! nodes, increasing [L]
-        real(dp), allocatable :: values(:, :, :)    !! quantity, place in x, place in z
-    contains
-        procedure :: at
-    end type fault_map
+    public :: fault_plan
 
     type :: fault_plan
         character(len=:), allocatable :: geometry   !! 'antiplane_half' or 'whole'
@@ -25,10 +17,10 @@ module fault_settings
         real(dp) :: poisson = 0.25_dp               !! Poisson's ratio; not used in antiplane strain
         real(dp) :: wave_speed = 0.0_dp             !! of shear waves [L/T]
         real(dp) :: plate_rate = 0.0_dp             !! slip rate that is imposed from afar [L/T]
-        type(fault_map) :: constants                !! of friction, in the order of `props`; the
+        type(map_on_grid) :: constants                !! of friction, in the order of `props`; the
                                                     !! last quantity is the normal traction
         logical :: steady = .true.                  !! starts from sliding at the plate rate
-        type(fault_map) :: initial                  !! if not: traction [F/L^2], internal variable
+        type(map_on_grid) :: initial                  !! if not: traction [F/L^2], internal variable
         real(dp) :: t_end = 0.0_dp                  !! [T]
         real(dp) :: rtol = 1.0e-4_dp                !! error of a step, see docs/fault.md
         logical :: rate_state = .true.              !! the law: rate-and-state friction
@@ -47,36 +39,6 @@ module fault_settings
     end type fault_plan
 
 contains
-
-    !> All quantities of the map at a point.
-    pure function at(self, x, z) result(values)
-        class(fault_map), intent(in) :: self
-        real(dp), intent(in) :: x, z   !! [L]
-        real(dp) :: values(size(self%values, 1))
-        integer :: i, k
-        real(dp) :: u, w
-
-        call place(self%x, x, i, u)
-        call place(self%z, z, k, w)
-        values = self%values(:, i, k)
-        if (u > 0.0_dp) values = values + u * (self%values(:, i + 1, k) - self%values(:, i, k))
-        if (w > 0.0_dp) then
-            values = values + w * (self%values(:, i, k + 1) - self%values(:, i, k))
-            if (u > 0.0_dp) values = values + u * w * (self%values(:, i + 1, k + 1) &
-                - self%values(:, i, k + 1) - self%values(:, i + 1, k) + self%values(:, i, k))
-        end if
-    end function at
-
-    !> The node below, and the part of the way to the next.
-    pure subroutine place(nodes, x, i, part)
-        real(dp), intent(in) :: nodes(:), x
-        integer, intent(out) :: i
-        real(dp), intent(out) :: part
-
-        i = max(1, count(nodes <= x))
-        part = 0.0_dp
-        if (i < size(nodes)) part = max(0.0_dp, (x - nodes(i)) / (nodes(i + 1) - nodes(i)))
-    end subroutine place
 
     pure function dx(self)
         class(fault_plan), intent(in) :: self

@@ -3,6 +3,7 @@ module check
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use fault_reader, only : read_fault_plan
     use fault_settings, only : fault_plan
+    use input_kind, only : verb_of
     use namelist_input, only : namelist_file
     use platform, only : report
     use point_reader, only : read_point_settings
@@ -12,7 +13,7 @@ module check
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
     use table_size, only : check_table_size, expected_bytes, gigabyte
-    use verb_common, only : exit_bad_input, exit_done, has_faults, is_readable, verb_of
+    use verb_common, only : exit_bad_input, exit_done, has_faults, is_readable
     implicit none
     private
 

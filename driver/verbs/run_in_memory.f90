@@ -6,6 +6,7 @@ module run_in_memory
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use c_library, only : c_strlen
     use friction_mod, only : friction_null_pointer
+    use input_kind, only : refuse_other_verb
     use linear_stability, only : undecided
     use memory_recorder, only : memory_table, memory_watch
     use namelist_input, only : namelist_file, read_namelist_text
@@ -203,13 +204,15 @@ contains
         character(len=:), allocatable, intent(out) :: faults   !! ends with a null character
         type(namelist_file) :: file
         character(len=:), allocatable :: problem
+        logical :: refused
 
         call read_namelist_text(name, text, file, problem)
         if (len(problem) > 0) then
             faults = name // ': ' // problem // new_line('a') // c_null_char
             return
         end if
-        call read_settings(file, run)
+        call refuse_other_verb('run', file, refused)
+        if (.not. refused) call read_settings(file, run)
         faults = c_null_char
         if (size(file%faults) > 0) faults = file%describe_faults() // c_null_char
     end subroutine read_text

@@ -2,6 +2,7 @@
 module stability_study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use command_line, only : command
+    use input_kind, only : verb_of
     use linear_stability, only : undecided
     use namelist_input, only : namelist_file
     use platform, only : report
@@ -17,7 +18,7 @@ module stability_study
     use sweep_table, only : point_text
     use text_file, only : output_file
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, is_readable, verb_of
+        has_faults, is_for, is_readable
     implicit none
     private
 
@@ -45,9 +46,7 @@ contains
 
         exit_status = exit_bad_input
         if (.not. is_readable(wanted%input, file)) return
-        if (verb_of(file) /= 'sweep') then
-            if (.not. is_for('run', file)) return
-        end if
+        if (.not. is_for('stability', file)) return
         call read_runs(file, plan)
         if (has_faults(file)) return
         if (.not. directory_is_ready(wanted%output)) return

@@ -1,12 +1,13 @@
 !> What all verbs share: exit statuses, an input that can be read, a directory that is ready.
 module verb_common
     use, intrinsic :: iso_fortran_env, only : error_unit
+    use input_kind, only : refuse_other_verb
     use namelist_input, only : namelist_file, read_namelist_file
     use platform, only : make_directory
     implicit none
     private
 
-    public :: directory_is_ready, has_faults, is_for, is_readable, tell_failure, verb_of
+    public :: directory_is_ready, has_faults, is_for, is_readable, tell_failure
 
     integer, parameter, public :: exit_done = 0, exit_failed = 1, exit_bad_input = 2
 
@@ -24,36 +25,16 @@ contains
         if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
     end function is_readable
 
-    !> Which verb is an input for, by the groups that only it has? Empty if that cannot be told.
-    function verb_of(file) result(verb)
-        type(namelist_file), intent(in) :: file
-        character(len=:), allocatable :: verb
-
-        verb = ''
-        if (file%line_of_group('slider') > 0 .or. file%line_of_group('drive') > 0) verb = 'run'
-        if (file%line_of_group('sweep') > 0) verb = 'sweep'
-        if (file%line_of_group('fault') > 0) verb = 'fault'
-        if (file%line_of_group('point') > 0) verb = 'point'
-    end function verb_of
-
     !> Is this an input of the verb? One of another verb is told which one, and nothing else.
     function is_for(verb, file) result(right)
         character(len=*), intent(in) :: verb
         type(namelist_file), intent(inout) :: file
         logical :: right
-        character(len=:), allocatable :: other
+        logical :: refused
 
-        other = verb_of(file)
-        right = other == verb .or. len(other) == 0
-        if (right) return
-        if (verb /= 'run' .and. other == 'run') then
-            call file%add_fault(0, 'group &' // verb // ' is missing; as it is, this is an input ' &
-                // 'of: stickslip run ' // file%name)
-        else
-            call file%add_fault(file%line_of_group(other), '&' // other // ': unknown group to ' &
-                // verb // '; this is an input of: stickslip ' // other // ' ' // file%name)
-        end if
-        right = .not. has_faults(file)
+        call refuse_other_verb(verb, file, refused)
+        right = .not. refused
+        if (refused) right = .not. has_faults(file)
     end function is_for
 
     !> Tells all faults of an input.

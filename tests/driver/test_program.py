@@ -12,6 +12,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ['STICKSLIP']
+FAULT_ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault').exists()
 INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
 GOOD = {
     'friction': {'law': "'subloading'", 'alpha_n': '1000', 'alpha_t': '1000', 'mu_s': '0.4',
@@ -186,6 +187,20 @@ class GoodInput(Program):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         self.assertEqual(result.stdout, 'case.nml: valid, 100 steps, for stickslip run\n')
         self.assertEqual(os.listdir(self.folder), ['case.nml'])
+
+    def test_every_verb_says_which_one_an_input_is_for(self):
+        inputs = {'run': 'stick_slip.nml', 'sweep': 'sweep_map.nml', 'point': 'point_mixed.nml', 'fault': 'fault_bp1.nml'}
+        for right, name in inputs.items():
+            path = INPUTS / name
+            for verb in ('run', 'sweep', 'point', 'stability') + (('fault',) if FAULT_ENGINE else ()):
+                if verb == right or (verb == 'stability' and right in ('run', 'sweep')):
+                    continue
+                result = self.run_program(verb, path)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+                self.assertIn(f'this is an input of the verb {right}, not of {verb}', result.stderr)
+                self.assertTrue(result.stderr.endswith(f': stickslip {right} {path}\n'), result.stderr)
+        self.assertEqual(os.listdir(self.folder), [])
 
     def test_an_input_may_come_from_a_pipe(self):
         # it can be read once only

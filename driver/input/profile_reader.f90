@@ -1,0 +1,209 @@
+!> Quantities that differ from place to place: where the input has '@file.csv' in place of a number,
+!> the file has it at nodes, in a column of the key's name beside the columns of the coordinates.
+module profile_reader
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use csv_table, only : column_request, csv => table, read_table
+    use grid_map, only : map_on_grid, nodes_up_to
+    use namelist_input, only : namelist_file
+    use namelist_parser, only : value_token
+    implicit none
+    private
+
+    public :: joined, names_profile, number_text, profile, put_number, read_map, take_profiles
+
+    !> A quantity that a file gives at nodes.
+    type :: profile
+        character(len=:), allocatable :: group, key   !! where the input names the file
+        type(map_on_grid) :: map                      !! of one quantity
+    end type profile
+
+    interface
+        !> LAPACK: sorts numbers.
+        pure subroutine dlasrt(id, n, d, info)
+            import :: dp
+            implicit none
+            character(len=1), intent(in) :: id   !! 'I': they increase
+            integer, intent(in) :: n
+            real(dp), intent(inout) :: d(n)
+            integer, intent(out) :: info
+        end subroutine dlasrt
+    end interface
+
+contains
+
+    !> Reads the files that keys of &friction name, and that the normal traction in another group
+    !> does. Every fault is left in `file%faults`.
+    subroutine take_profiles(file, group, axes, profiles)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group     !! that has the key normal_traction
+        character(len=*), intent(in) :: axes(2)   !! see `read_map`
+        type(profile), allocatable, intent(out) :: profiles(:)
+        type(profile) :: this
+        integer :: i
+        logical :: sound
+
+        allocate (profiles(0))
+        do i = 1, size(file%entries)
+            if (.not. names_profile(file, i, group)) cycle
+            this%group = file%entries(i)%group
+            this%key = file%entries(i)%key
+            call read_map(file, this%group, this%key, axes, [this%key], this%map, sound)
+            if (sound) profiles = [profiles, this]
+            file%entries(i)%faulty = .not. sound
+        end do
+    end subroutine take_profiles
+
+    !> Is an entry of the input one that may name a file, and does?
+    pure function names_profile(file, i, group) result(yes)
+        type(namelist_file), intent(in) :: file
+        integer, intent(in) :: i                !! entry
+        character(len=*), intent(in) :: group   !! that has the key normal_traction
+        logical :: yes
+
+        yes = .false.
+        associate (entry => file%entries(i))
+            if (size(entry%values) /= 1) return
+            if (entry%group == 'friction' .or. (entry%group == group .and. entry%key &
+                == 'normal_traction')) yes = names_file(entry%values(1))
+        end associate
+    end function names_profile
+
+    pure function names_file(token) result(yes)
+        type(value_token), intent(in) :: token
+        logical :: yes
+
+        yes = .false.
+        if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
+    end function names_file
+
+    !> A number takes the place of the name of a file.
+    subroutine put_number(file, group, key, number)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        real(dp), intent(in) :: number
+        integer :: i
+
+        do i = 1, size(file%entries)
+            if (file%entries(i)%group /= group .or. file%entries(i)%key /= key) cycle
+            file%entries(i)%values(1)%text = number_text(number)
+            file%entries(i)%values(1)%quoted = .false.
+        end do
+    end subroutine put_number
+
+    pure function number_text(number) result(text)
+        real(dp), intent(in) :: number
+        character(len=:), allocatable :: text
+        character(len=32) :: buffer
+
+        write (buffer, '(es24.16e3)') number
+        text = trim(adjustl(buffer))
+    end function number_text
+
+    !> Two lists as one that increases, each number once.
+    pure function joined(a, b) result(both)
+        real(dp), intent(in) :: a(:), b(:)
+        real(dp), allocatable :: both(:)
+        integer :: n, info
+
+        both = [a, b]
+        n = size(both)
+        call dlasrt('I', n, both, info)
+        if (n > 1) both = pack(both, [.true., both(2:) > both(:n - 1)])
+    end function joined
+
+    !> Reads the file that a key names: columns of the axes, in full grid, and `names`.
+    subroutine read_map(file, group, key, axes, names, map, sound)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        character(len=*), intent(in) :: axes(2)    !! columns of the coordinates: one that may be
+                                                   !! left out, or '', and one that must be there
+        character(len=*), intent(in) :: names(:)
+        type(map_on_grid), intent(out) :: map
+        logical, intent(out) :: sound
+        type(csv) :: read_in
+        integer :: faults_before, j
+
+        faults_before = size(file%faults)
+        call read_columns(file, group, key, axes, names, read_in)
+        sound = size(file%faults) == faults_before .and. allocated(read_in%values)
+        if (.not. sound) return
+        map%x = nodes_in(read_in, axes(1))
+        map%z = nodes_in(read_in, axes(2))
+        if (read_in%column(trim(axes(2))) == 0) call file%reject(group, key, &
+            "its file has no column '" // trim(axes(2)) // "'")
+        if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
+            if (axes(1) == '') then
+                call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
+            else
+                call file%reject(group, key, 'its file must have each node of a grid once: one ' &
+                    // 'row for each ' // trim(axes(2)) // ', or for each pair of an ' &
+                    // trim(axes(1)) // ' and a ' // trim(axes(2)))
+            end if
+        end if
+        do j = 1, size(names)
+            if (read_in%column(trim(names(j))) == 0) call file%reject(group, key, &
+                "its file has no column '" // trim(names(j)) // "'")
+        end do
+        sound = size(file%faults) == faults_before
+        if (sound) call fill_map(read_in, axes, names, map)
+    end subroutine read_map
+
+    subroutine read_columns(file, group, key, axes, names, read_in)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        character(len=*), intent(in) :: axes(2)
+        character(len=*), intent(in) :: names(:)
+        type(csv), intent(out) :: read_in
+        type(column_request) :: requests(size(names) + 2)
+        character(len=:), allocatable :: name
+        integer :: first, i
+
+        call file%get_text(group, key, name)
+        if (len(name) == 0) return
+        if (name(1:1) == '@') name = name(2:)
+        if (len(name) == 0) then
+            call file%reject(group, key, 'must name a file')
+            return
+        end if
+        requests(1)%name = trim(axes(1))
+        requests(2)%name = trim(axes(2))
+        do i = 1, size(names)
+            requests(2 + i)%name = trim(names(i))
+        end do
+        first = merge(2, 1, axes(1) == '')
+        call read_table(file%beside(name), requests(first:), read_in)
+        do i = 1, size(read_in%faults)
+            call file%reject(group, key, read_in%faults(i)%text)
+        end do
+    end subroutine read_columns
+
+    !> Places along an axis that a file has; 0 if it does not have the axis.
+    pure function nodes_in(read_in, axis) result(nodes)
+        type(csv), intent(in) :: read_in
+        character(len=*), intent(in) :: axis
+        real(dp), allocatable :: nodes(:)
+
+        nodes = [0.0_dp]
+        if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
+            read_in%values(read_in%column(trim(axis)), :))
+    end function nodes_in
+
+    subroutine fill_map(read_in, axes, names, map)
+        type(csv), intent(in) :: read_in
+        character(len=*), intent(in) :: axes(2)
+        character(len=*), intent(in) :: names(:)
+        type(map_on_grid), intent(inout) :: map
+        integer :: columns(size(names)), along(2), i, j, k, row
+
+        columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
+        along = [(read_in%column(trim(axes(j))), j = 1, 2)]
+        allocate (map%values(size(names), size(map%x), size(map%z)))
+        i = 1
+        do row = 1, size(read_in%values, 2)
+            if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
+            k = nodes_up_to(map%z, read_in%values(along(2), row))
+            map%values(:, i, k) = read_in%values(columns, row)
+        end do
+    end subroutine fill_map
+
+end module profile_reader
