@@ -121,6 +121,10 @@ typedef struct {
 /* The facts of a law. Returns FRICTION_OK or FRICTION_BAD_LAW. */
 int friction_get_law(int law, friction_law_facts *facts);
 
+/* What a law is, in words, of at most length - 1 characters; 81 are room for every text.
+ * Returns FRICTION_OK, FRICTION_BAD_LAW, or FRICTION_BAD_SIZE for length < 1. */
+int friction_get_law_summary(int law, int length, char *text);
+
 typedef struct {
     char name[24];           /* "law", "alpha_n", "alpha_t", "mu_s", ... */
     char unit[8];            /* in force F, length L, time T: "F/L^3", "T/L", "-", ... */

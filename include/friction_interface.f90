@@ -11,8 +11,9 @@ module friction_interface
     public :: friction_update, friction_update_batch, &
         friction_update_batch_props, friction_update_points, friction_tangential, &
         friction_rates, friction_slip_rates, friction_message, friction_version, friction_text
-    public :: friction_law_count, friction_get_law, friction_get_constant, friction_get_default, &
-        friction_check, friction_law_facts, friction_constant_facts
+    public :: friction_law_count, friction_get_law, friction_get_law_summary, &
+        friction_get_constant, friction_get_default, friction_check, friction_law_facts, &
+        friction_constant_facts
 
     integer(c_int), parameter, public :: friction_ok = 0
     integer(c_int), parameter, public :: friction_snap_back = 1
@@ -192,6 +193,17 @@ module friction_interface
             type(friction_law_facts), intent(inout) :: facts
             integer(c_int) :: status
         end function friction_get_law
+
+        !> What a law is, in words.
+        function friction_get_law_summary(law, length, text) result(status) &
+            bind(C, name='friction_get_law_summary')
+            import :: c_char, c_int
+            implicit none
+            integer(c_int), value, intent(in) :: law
+            integer(c_int), value, intent(in) :: length
+            character(kind=c_char), intent(inout) :: text(*)
+            integer(c_int) :: status
+        end function friction_get_law_summary
 
         !> The facts of a constant.
         function friction_get_constant(law, place, facts) result(status) &

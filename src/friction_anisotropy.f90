@@ -29,9 +29,11 @@ module friction_anisotropy
     !> The constants that every law takes after its shear cap.
     type(law_constant), parameter, public :: orthotropy_constants(2) = [ &
         law_constant('mu_ratio', '-', 'friction coefficient along axis 2 over that along axis 1', &
+        'FrictionRatio', &
         lower=1.0_wp / largest_mu_ratio, upper=largest_mu_ratio, or_zero=.true., optional=.true., &
         default=1.0_wp), &
-        law_constant('direction', '-', 'direction of slip', lower=0.0_wp, upper=1.0_wp, &
+        law_constant('direction', '-', 'direction of slip', 'SlipDirection', &
+        lower=0.0_wp, upper=1.0_wp, &
         optional=.true., whole=.true., words='associated radial')]
 
     !> How friction depends on the direction.

@@ -7,12 +7,13 @@ module friction_facts_c
     use friction_law_texts, only : default_text, is_blank
     use friction_mod, only : friction_bad_law, friction_bad_property, friction_bad_size, &
         friction_check, friction_constants, friction_default, friction_internal_variable, &
-        friction_law_count, friction_law_name, friction_law_of, friction_null_pointer, &
-        friction_ok, constant_table, internal_variable, rule_text, text_length
+        friction_law_count, friction_law_name, friction_law_of, friction_law_summary, &
+        friction_null_pointer, friction_ok, constant_table, internal_variable, rule_text, &
+        text_length
     implicit none
     private
 
-    public :: c_check, c_constant_facts, c_default, c_law_count, c_law_facts
+    public :: c_check, c_constant_facts, c_default, c_law_count, c_law_facts, c_law_summary
 
     !> `friction_law_facts` of include/friction.h.
     type, bind(C) :: law_record
@@ -60,6 +61,26 @@ contains
         record%constants = table%n
         status = friction_ok
     end function c_law_facts
+
+    !> `friction_get_law_summary` of include/friction.h.
+    function c_law_summary(law, length, text) result(status) &
+        bind(C, name='friction_get_law_summary')
+        integer(c_int), value, intent(in) :: law      !! its number
+        integer(c_int), value, intent(in) :: length   !! characters that `text` has room for
+        type(c_ptr), value, intent(in) :: text        !! out
+        integer(c_int) :: status
+        character(kind=c_char), pointer :: text_(:)
+
+        status = friction_null_pointer
+        if (.not. c_associated(text)) return
+        status = friction_bad_law
+        if (law < 1 .or. law > friction_law_count) return
+        status = friction_bad_size
+        if (length < 1) return
+        call c_f_pointer(text, text_, [length])
+        call to_c(friction_law_summary(law), text_)
+        status = friction_ok
+    end function c_law_summary
 
     !> `friction_get_constant` of include/friction.h.
     function c_constant_facts(law, place, facts) result(status) &

@@ -10,8 +10,8 @@ module friction_lane_constants
         lane_subloading, lanes, n_constants, n_own, no_cap, with_cap, &
         with_two_coefficients
     use friction_law, only : law_state, named_law
-    use friction_law_choice, only : choose_law, choose_own_law, first_own_prop, law_storage, &
-        prop_alpha_n, prop_alpha_t, prop_law, surface_options
+    use friction_law_choice, only : choose_law, choose_own_law, first_own_prop, law_descriptions, &
+        law_storage, prop_alpha_n, prop_alpha_t, prop_law, surface_options
     use friction_law, only : law
     use friction_law_constants, only : constant_table, positive
     use friction_rate_state_law, only : rate_state_law, slipping
@@ -98,7 +98,7 @@ contains
         plan%source%place(c_alpha_n) = prop_alpha_n
         plan%source%place(c_alpha_t) = prop_alpha_t
         call must_stay(prop_law, props(prop_law), plan)
-        table = own%constants()
+        table = law_descriptions(nint(props(prop_law)))%constants
         column_of = 0
         do k = 1, table%n
             place = first_own_prop + k - 1

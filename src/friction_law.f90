@@ -6,15 +6,17 @@
 !> (module `friction_return_map`) knows no law by name; adding a law means adding one file in
 !> src/laws/ and one line where laws are chosen.
 !>
-!> A `named_law` also tells what is to be known about it: its name, its constants, and what they
-!> mean to those who choose steps and tolerances.
+!> A `named_law` also tells what its constants mean to those who choose steps and tolerances. What
+!> is to be known about it without values, its name and its table of constants, is a constant of its
+!> module, the `law_description`.
 module friction_law
     use friction_kinds, only : wp
     use friction_law_constants, only : constant_table, name_length, unit_length
     implicit none
     private
 
-    public :: below, internal_variable, law, law_state, law_traits, load_rates, named_law, sliding
+    public :: below, internal_variable, law, law_description, law_state, law_traits, load_rates, &
+        named_law, sliding
 
     !> Least share of the strength, for a law whose strength is a share of a larger one: from less,
     !> no slip starts, which would be in the underflow of the arithmetic.
@@ -112,12 +114,22 @@ module friction_law
         logical :: exists                    !! otherwise `r` is 0
     end type internal_variable
 
+    type(internal_variable), parameter, public :: no_internal_variable = &
+        internal_variable('R', '-', exists=.false.)
+
+    integer, parameter, public :: summary_length = 80
+
+    !> What is to be known about a law whatever the values of its constants.
+    type :: law_description
+        character(len=name_length) :: name          !! as in the program's input
+        character(len=summary_length) :: summary    !! what the law is, in words
+        type(constant_table) :: constants           !! its own, in the order of `props`
+        type(internal_variable) :: internal = no_internal_variable
+    end type law_description
+
     type, abstract, extends(law) :: named_law
     contains
         procedure(read_interface), deferred :: read
-        procedure(name_interface), nopass, deferred :: name
-        procedure(constants_interface), nopass, deferred :: constants
-        procedure, nopass :: internal => no_internal_variable
         procedure, nopass :: mobilises_cohesion => adds_no_cohesion
         procedure(coefficient_interface), deferred :: typical_coefficient
         procedure :: largest_coefficient => typical_is_largest
@@ -138,20 +150,6 @@ module friction_law
             integer, intent(out) :: n_own          !! how many of them, at most, are the law's own
             integer, intent(out) :: status         !! ok, bad size, or bad property
         end subroutine read_interface
-
-        !> The name of the law, as in the program's input.
-        pure function name_interface() result(name)
-            import :: name_length
-            implicit none
-            character(len=name_length) :: name
-        end function name_interface
-
-        !> Its own constants, in the order of `props`.
-        pure function constants_interface() result(table)
-            import :: constant_table
-            implicit none
-            type(constant_table) :: table
-        end function constants_interface
 
         !> A friction coefficient that characterises the law.
         pure function coefficient_interface(self) result(mu)
@@ -373,12 +371,6 @@ contains
 
         new = state
     end function not_pressed
-
-    pure function no_internal_variable() result(variable)
-        type(internal_variable) :: variable
-
-        variable = internal_variable(name='R', unit='-', exists=.false.)
-    end function no_internal_variable
 
     !> Does the law itself add its cohesion to its strength, because it carries a share of that?
     !> Otherwise module friction_cohesion adds it to the resistance.

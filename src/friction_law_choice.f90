@@ -3,25 +3,27 @@
 module friction_law_choice
     use friction_anisotropy, only : isotropic, orthotropy, orthotropy_constants, read_orthotropy
     use friction_cohesion, only : cohesion_constants, cohesive_law
-    use friction_coulomb_law, only : coulomb_law
-    use friction_flash_heating_law, only : flash_heating_law
+    use friction_coulomb_law, only : coulomb_description, coulomb_law
+    use friction_flash_heating_law, only : flash_heating_description, flash_heating_law
     use friction_kinds, only : wp
-    use friction_law, only : law, named_law
-    use friction_linker_dieterich_law, only : linker_dieterich_law
+    use friction_law, only : law, law_description, named_law
+    use friction_linker_dieterich_law, only : linker_dieterich_description, linker_dieterich_law
     use friction_law_constants, only : law_constant, positive
-    use friction_rate_state_law, only : rate_state_law
+    use friction_rate_state_law, only : rate_state_description, rate_state_law
     use friction_shear_cap, only : cap_constants, capped_law
-    use friction_slip_weakening_healing_law, only : slip_weakening_healing_law
-    use friction_slip_weakening_law, only : slip_weakening_law
-    use friction_static_kinetic_law, only : static_kinetic_law
+    use friction_slip_weakening_healing_law, only : healing_description, &
+        slip_weakening_healing_law
+    use friction_slip_weakening_law, only : slip_weakening_description, slip_weakening_law
+    use friction_static_kinetic_law, only : static_kinetic_description, static_kinetic_law
     use friction_status, only : friction_bad_law, friction_bad_property, friction_ok
     use friction_subloading_exact_law, only : subloading_exact_law
     use friction_subloading_general_law, only : subloading_general_law
-    use friction_subloading_law, only : scheme_exact_rate, subloading_law, u_logarithm
+    use friction_subloading_law, only : scheme_exact_rate, subloading_description, &
+        subloading_law, u_logarithm
     implicit none
     private
 
-    public :: choose_law, choose_own_law, find_law, find_rate_law, law_storage, options_of, &
+    public :: choose_law, choose_own_law, find_rate_law, law_storage, options_of, &
         surface_options, whole_number
 
     !> Laws: values of props(1).
@@ -33,7 +35,13 @@ module friction_law_choice
     integer, parameter, public :: law_slip_weakening_healing = 6
     integer, parameter, public :: law_flash_heating = 7
     integer, parameter, public :: law_linker_dieterich = 8
-    integer, parameter, public :: law_count = 8   !! they are numbered from 1 to this
+
+    !> In the order of their numbers.
+    type(law_description), parameter, public :: law_descriptions(*) = [ &
+        subloading_description, coulomb_description, static_kinetic_description, &
+        rate_state_description, slip_weakening_description, healing_description, &
+        flash_heating_description, linker_dieterich_description]
+    integer, parameter, public :: law_count = size(law_descriptions)   !! numbered from 1 to this
 
     !> Material constants: places in `props`. The law's own ones follow, then those of the options
     !> (`option_constants`).
@@ -42,13 +50,15 @@ module friction_law_choice
 
     !> Of the springs of the contact, which stand before the law's own.
     type(law_constant), parameter, public :: spring_constants(2) = [ &
-        law_constant('alpha_n', 'F/L^3', 'normal contact stiffness', lower=positive), &
-        law_constant('alpha_t', 'F/L^3', 'tangential contact stiffness', lower=positive)]
+        law_constant('alpha_n', 'F/L^3', 'normal contact stiffness', 'NormalStiffness', &
+        lower=positive), &
+        law_constant('alpha_t', 'F/L^3', 'tangential contact stiffness', 'TangentialStiffness', &
+        lower=positive)]
 
     !> Of the damper beside the tangential spring, which comes last.
     type(law_constant), parameter :: damper_constants(1) = [ &
-        law_constant('eta_t', 'F T/L^3', 'tangential contact damping', lower=0.0_wp, &
-        optional=.true.)]
+        law_constant('eta_t', 'F T/L^3', 'tangential contact damping', 'TangentialDamping', &
+        lower=0.0_wp, optional=.true.)]
 
     !> The options of every law, from the place behind its own constants on.
     integer, parameter, public :: option_cap = 1

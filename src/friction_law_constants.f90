@@ -13,13 +13,15 @@ module friction_law_constants
     real(wp), parameter :: positive = 2.0_wp**(-333)
 
     integer, parameter, public :: name_length = 23, unit_length = 8, meaning_length = 64
-    integer, parameter, public :: words_length = 64
+    integer, parameter, public :: long_name_length = 32, words_length = 64, table_length = 24
 
     !> One constant. Places count within the same table.
     type :: law_constant
         character(len=name_length) :: name = ''    !! also its key in the program's input
         character(len=unit_length) :: unit = ''    !! '-', 'L', 'T/L', 'F/L^2', ...
         character(len=meaning_length) :: meaning = ''   !! in words
+        character(len=long_name_length) :: long_name = ''   !! for hosts that name
+                                                            !! constants in words (MFront's)
         real(wp) :: lower = 0.0_wp         !! least value; `positive` stands for > 0
         real(wp) :: upper = huge(1.0_wp)   !! largest value, where it is below that of all numbers
                                            !! (`largest`)
@@ -39,8 +41,11 @@ module friction_law_constants
     !> A table of fixed size: nothing is allocated.
     type :: constant_table
         integer :: n = 0               !! how many there are
-        type(law_constant) :: of(24)
+        type(law_constant) :: of(table_length)
     end type constant_table
+
+    !> Fills up a table that is written down: constant_table(n, [constants, no_constants(n + 1:)]).
+    type(law_constant), parameter, public :: no_constants(table_length) = law_constant()
 
 contains
 

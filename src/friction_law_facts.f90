@@ -5,6 +5,7 @@
 !>
 !>     friction_law_count                    laws are numbered from 1 to this
 !>     friction_law_name(law)                'subloading', ...; '' if there is none
+!>     friction_law_summary(law)             what the law is, in words
 !>     friction_law_number(name)             0 if there is none
 !>     friction_constants(law)               table of all its constants, by their places in `props`
 !>     friction_place(law, name)             place of a constant in `props`, 0 if there is none
@@ -20,9 +21,10 @@
 !>     friction_coefficient_change(traits, ...)     what a changed state means to friction later
 module friction_law_facts
     use friction_kinds, only : largest, wp
-    use friction_law, only : internal_variable, law_state, law_traits, named_law
-    use friction_law_choice, only : choose_own_law, find_law, first_own_prop, law_count, &
-        law_storage, option_constants, options_of, prop_alpha_n, prop_alpha_t, prop_law, &
+    use friction_law, only : internal_variable, law_state, law_traits, named_law, &
+        no_internal_variable, summary_length
+    use friction_law_choice, only : choose_own_law, law_count, law_descriptions, law_storage, &
+        option_constants, options_of, prop_alpha_n, prop_alpha_t, prop_law, &
         spring_constants, surface_options, whole_number
     use friction_law_constants, only : constant_table, default_value, law_constant, name_length
     use friction_law_texts, only : broken_rule, is_blank, put, put_word, rule_text, same_text, &
@@ -34,8 +36,9 @@ module friction_law_facts
 
     public :: friction_check, friction_coefficient_change, friction_constants, friction_default, &
         friction_facts, friction_healing_rate, friction_internal_variable, friction_law_name, &
-        friction_law_number, friction_law_of, friction_place, internal_variable, &
-        broken_rule, constant_table, law_constant, law_facts, rule_text, text_length, word_of
+        friction_law_number, friction_law_of, friction_law_summary, friction_place, &
+        broken_rule, constant_table, internal_variable, law_constant, law_facts, rule_text, &
+        text_length, word_of
 
     integer, parameter, public :: friction_law_count = law_count
 
@@ -74,13 +77,19 @@ contains
     pure function friction_law_name(law) result(name)
         integer, intent(in) :: law               !! its number
         character(len=name_length) :: name
-        type(law_storage), target :: storage
-        class(named_law), pointer :: found
 
-        call find_law(law, storage, found)
         name = ' '
-        if (associated(found)) name = found%name()
+        if (law >= 1 .and. law <= law_count) name = law_descriptions(law)%name
     end function friction_law_name
+
+    !> What a law is, in words: '' if there is none.
+    pure function friction_law_summary(law) result(summary)
+        integer, intent(in) :: law                   !! its number
+        character(len=summary_length) :: summary
+
+        summary = ' '
+        if (law >= 1 .and. law <= law_count) summary = law_descriptions(law)%summary
+    end function friction_law_summary
 
     !> The number of a law: 0 if there is none of that name.
     pure function friction_law_number(name) result(law)
@@ -107,18 +116,15 @@ contains
     pure function friction_constants(law) result(table)
         integer, intent(in) :: law                      !! its number
         type(constant_table) :: table
-        type(constant_table) :: own
-        type(law_storage), target :: storage
-        class(named_law), pointer :: found
 
-        call find_law(law, storage, found)
-        if (.not. associated(found)) return
+        if (law < 1 .or. law > law_count) return
         table%n = prop_law
         table%of(prop_law) = law_constant('law', '-', 'number of the law', lower=1.0_wp, &
             upper=real(law_count, wp))
         call append(table, spring_constants)
-        own = found%constants()
-        call append(table, own%of(:own%n))
+        associate (own => law_descriptions(law)%constants)
+            call append(table, own%of(:own%n))
+        end associate
         call append(table, option_constants)
     end function friction_constants
 
@@ -166,12 +172,9 @@ contains
     pure function friction_internal_variable(law) result(variable)
         integer, intent(in) :: law                !! number of the law
         type(internal_variable) :: variable       !! 'R', and none, if there is no such law
-        type(law_storage), target :: storage
-        class(named_law), pointer :: found
 
-        call find_law(law, storage, found)
-        variable = internal_variable('R', '-', .false.)
-        if (associated(found)) variable = found%internal()
+        variable = no_internal_variable
+        if (law >= 1 .and. law <= law_count) variable = law_descriptions(law)%internal
     end function friction_internal_variable
 
     !> The value of a constant that is left out; 0 if it has no default.

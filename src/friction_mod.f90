@@ -17,8 +17,8 @@ module friction_mod
     use friction_law_facts, only : broken_rule, constant_table, friction_check, &
         friction_coefficient_change, friction_constants, friction_default, friction_facts, &
         friction_healing_rate, friction_internal_variable, friction_law_count, friction_law_name, &
-        friction_law_number, friction_law_of, friction_place, internal_variable, law_constant, &
-        law_facts, rule_text, text_length, word_of
+        friction_law_number, friction_law_of, friction_law_summary, friction_place, &
+        internal_variable, law_constant, law_facts, rule_text, text_length, word_of
     use friction_status, only : friction_bad_axis, friction_bad_increment, friction_bad_law, &
         friction_bad_normal, friction_bad_property, friction_bad_size, friction_bad_state, &
         friction_message, friction_no_convergence, friction_null_pointer, friction_ok, &
@@ -46,13 +46,12 @@ module friction_mod
     ! what is to be known about the laws: module friction_law_facts
     public :: friction_check, friction_coefficient_change, friction_constants, friction_default, &
         friction_facts, friction_healing_rate, friction_internal_variable, friction_law_count, &
-        friction_law_name, friction_law_number, friction_law_of, friction_place, &
-        broken_rule, constant_table, internal_variable, law_constant, law_facts, rule_text, &
-        text_length, word_of
+        friction_law_name, friction_law_number, friction_law_of, friction_law_summary, &
+        friction_place, broken_rule, constant_table, internal_variable, law_constant, law_facts, &
+        rule_text, text_length, word_of
     public :: prop_alpha_n, prop_alpha_t, prop_law   ! places in `props` that all laws share
     public :: law_coulomb, law_flash_heating, law_linker_dieterich, law_rate_state, &
-        law_slip_weakening, &
-        law_slip_weakening_healing, law_static_kinetic, law_subloading
+        law_slip_weakening, law_slip_weakening_healing, law_static_kinetic, law_subloading
     public :: scheme_backward_euler, scheme_exact_rate
     public :: u_cotangent, u_logarithm, u_reciprocal
     public :: direction_associated, direction_radial, largest_mu_ratio

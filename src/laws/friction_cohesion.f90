@@ -22,6 +22,7 @@ module friction_cohesion
     !> The constant that every law takes after those of orthotropic friction.
     type(law_constant), parameter, public :: cohesion_constants(1) = [ &
         law_constant('cohesion', 'F/L^2', 'tangential traction that is carried without pressure', &
+        'Cohesion', &
         lower=0.0_wp, optional=.true.)]
 
     type, extends(law_around) :: cohesive_law

@@ -5,8 +5,8 @@
 !> Nothing evolves; the internal variable stays 0.
 module friction_coulomb_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law_state, load_rates, named_law, sliding
-    use friction_law_constants, only : constant_table, law_constant, name_length
+    use friction_law, only : below, law_description, law_state, load_rates, named_law, sliding
+    use friction_law_constants, only : constant_table, law_constant, no_constants
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -17,8 +17,6 @@ module friction_coulomb_law
         real(wp) :: mu   !! friction coefficient, >= 0 [-]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
         procedure :: typical_coefficient
         procedure :: virgin
         procedure :: admits
@@ -31,7 +29,12 @@ module friction_coulomb_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(1) = [ &
-        law_constant('mu', '-', 'friction coefficient', lower=0.0_wp)]
+        law_constant('mu', '-', 'friction coefficient', 'Friction', lower=0.0_wp)]
+
+    type(law_description), parameter, public :: coulomb_description = law_description( &
+        name='coulomb', &
+        summary='Friction proportional to the pressure', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]))
 
 contains
 
@@ -49,19 +52,6 @@ contains
         self%mu = constants(1)
         status = friction_ok
     end subroutine read_constants
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'coulomb'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
 
     pure function typical_coefficient(self) result(mu)
         class(coulomb_law), intent(in) :: self

@@ -19,12 +19,12 @@ module friction_flash_heating_law
     use friction_flash_heating_core, only : kept_share, least_ratio, steady_ratio, &
         steady_ratio_slope, weak_part
     use friction_kinds, only : wp
-    use friction_law, only : law_traits
-    use friction_law_constants, only : complete_constants, constant_table, law_constant, &
-        name_length, positive
+    use friction_law, only : law_description, law_traits
+    use friction_law_constants, only : constant_table, law_constant, no_constants, positive
     use friction_rate_state_core, only : asinh_exp, decayed_part, mean_decay, slope_asinh_exp
-    use friction_rate_state_law, only : rate_state_constants, rate_state_law, shifted
-    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    use friction_rate_state_law, only : rate_state_constants, rate_state_law, shifted, &
+        state_variable
+    use friction_status, only : friction_bad_property, friction_ok
     implicit none
     private
 
@@ -36,8 +36,6 @@ module friction_flash_heating_law
         real(wp) :: n     !! how sharply it does, 1 to 1000 [-]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
         procedure :: traits
         procedure :: steady_shift
         procedure :: steady_bounds
@@ -46,14 +44,24 @@ module friction_flash_heating_law
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(9) = [ &
         rate_state_constants(1), &
-        law_constant('b', '-', 'evolution effect', lower=positive), &
+        law_constant('b', '-', 'evolution effect', 'EvolutionEffect', lower=positive), &
         rate_state_constants(3:5), &
-        law_constant('f_w', '-', 'friction coefficient far above v_w', lower=0.0_wp, not_above=5), &
-        law_constant('v_w', 'L/T', 'slip rate beyond which friction weakens', lower=positive), &
-        law_constant('n', '-', 'how sharply it weakens there', lower=1.0_wp, upper=1.0e3_wp, &
+        law_constant('f_w', '-', 'friction coefficient far above v_w', 'WeakFriction', &
+        lower=0.0_wp, not_above=5), &
+        law_constant('v_w', 'L/T', 'slip rate beyond which friction weakens', 'WeakeningSlipRate', &
+        lower=positive), &
+        law_constant('n', '-', 'how sharply it weakens there', 'WeakeningExponent', &
+        lower=1.0_wp, upper=1.0e3_wp, &
         optional=.true., default=8.0_wp), &
-        law_constant('theta_0', 'T', 'theta of a virgin point', lower=positive, optional=.true., &
+        law_constant('theta_0', 'T', 'theta of a virgin point', 'InitialState', &
+        lower=positive, optional=.true., &
         default_from=3, default_per=4)]
+
+    type(law_description), parameter, public :: flash_heating_description = law_description( &
+        name='flash_heating', &
+        summary='Rate-and-state friction, slip law, that weakens strongly beyond a slip rate', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]), &
+        internal=state_variable)
     integer, parameter :: n_needed = 7
 
     !> Least a, by b: the bounds of the search are differences of terms that large.
@@ -79,36 +87,18 @@ contains
         real(wp) :: c(size(table))
 
         n_own = size(table)
-        status = friction_bad_size
-        if (n < n_needed) return
-        call self%read_common(constants(:5), status)
+        call self%read_common(table, n_needed, n, constants, c, status)
         if (status < 0) return
         status = friction_bad_property
-        if (constants(2) < table(2)%lower .or. constants(7) < table(7)%lower) return
-        if (constants(6) < table(6)%lower .or. constants(6) > constants(table(6)%not_above)) return
         if (self%a < least_direct * self%b) return
         if (self%b < least_evolution * max(self%a, self%f0)) return
-        call complete_constants(n_needed, table, n, constants, c, status)
-        if (status /= friction_ok) return
         self%evolution = shifted
         self%f_w = c(6)
         self%v_w = c(7)
         self%n = c(8)
         self%theta_0 = c(9)
+        status = friction_ok
     end subroutine read_constants
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'flash_heating'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
 
     pure function traits(self)
         class(flash_heating_law), intent(in) :: self

@@ -9,10 +9,9 @@
 !> evolutions have closed forms.
 module friction_linker_dieterich_law
     use friction_kinds, only : wp
-    use friction_law_constants, only : complete_constants, constant_table, law_constant, &
-        name_length, positive
-    use friction_rate_state_law, only : rate_state_constants, rate_state_law
-    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    use friction_law, only : law_description
+    use friction_law_constants, only : constant_table, law_constant, no_constants, positive
+    use friction_rate_state_law, only : rate_state_constants, rate_state_law, state_variable
     implicit none
     private
 
@@ -21,17 +20,22 @@ module friction_linker_dieterich_law
     type, extends(rate_state_law) :: linker_dieterich_law
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
     end type linker_dieterich_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(8) = [ &
         rate_state_constants(1), &
-        law_constant('b', '-', 'evolution effect', lower=positive), &
+        law_constant('b', '-', 'evolution effect', 'EvolutionEffect', lower=positive), &
         rate_state_constants(3:5), &
-        law_constant('alpha', '-', 'effect of the pressure on the state', lower=0.0_wp), &
+        law_constant('alpha', '-', 'effect of the pressure on the state', 'PressureEffect', &
+        lower=0.0_wp), &
         rate_state_constants(6:7)]
+
+    type(law_description), parameter, public :: linker_dieterich_description = law_description( &
+        name='linker_dieterich', &
+        summary='Rate-and-state friction whose state depends on the contact pressure', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]), &
+        internal=state_variable)
     integer, parameter :: n_needed = 6
 
 contains
@@ -44,30 +48,11 @@ contains
         real(wp) :: c(size(table))
 
         n_own = size(table)
-        status = friction_bad_size
-        if (n < n_needed) return
-        call self%read_common(constants(:5), status)
+        call self%read_common(table, n_needed, n, constants, c, status)
         if (status < 0) return
-        status = friction_bad_property
-        if (constants(2) < table(2)%lower .or. constants(6) < table(6)%lower) return
-        call complete_constants(n_needed, table, n, constants, c, status)
-        if (status /= friction_ok) return
         self%alpha = c(6)
         self%evolution = int(c(7))
         self%theta_0 = c(8)
     end subroutine read_constants
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'linker_dieterich'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
 
 end module friction_linker_dieterich_law

@@ -17,10 +17,10 @@
 !> taken as proportional to the slip, so that it starts from zero and every number stays in range.
 module friction_rate_state_law
     use friction_kinds, only : largest, wp
-    use friction_law, only : internal_variable, law_state, law_traits, load_rates, named_law, &
-        onset_gradual, sliding, unbounded
+    use friction_law, only : internal_variable, law_description, law_state, law_traits, &
+        load_rates, named_law, onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
-        name_length, positive
+        no_constants, positive
     use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
         fall_of_mean, mean_decay, mean_growth, slip_law_rate, slipped_slope, slope_asinh_exp, &
         state_exponent
@@ -45,9 +45,6 @@ module friction_rate_state_law
         real(wp) :: alpha     !! effect of the pressure on the state, >= 0; 0 in this law [-]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
-        procedure, nopass :: internal
         procedure :: typical_coefficient
         procedure :: largest_coefficient
         procedure :: virgin
@@ -71,15 +68,33 @@ module friction_rate_state_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter, public :: rate_state_constants(7) = [ &
-        law_constant('a', '-', 'direct effect', lower=positive), &
-        law_constant('b', '-', 'evolution effect', lower=0.0_wp), &
-        law_constant('d_c', 'L', 'slip over which the state evolves', lower=positive), &
-        law_constant('v0', 'L/T', 'reference slip rate', lower=positive), &
-        law_constant('f0', '-', 'friction coefficient of steady sliding at v0', lower=0.0_wp), &
-        law_constant('evolution', '-', 'law by which theta evolves', lower=0.0_wp, upper=1.0_wp, &
+        law_constant('a', '-', 'direct effect', 'DirectEffect', lower=positive), &
+        law_constant('b', '-', 'evolution effect', 'EvolutionEffect', lower=0.0_wp), &
+        law_constant('d_c', 'L', 'slip over which the state evolves', 'CriticalSlip', &
+        lower=positive), &
+        law_constant('v0', 'L/T', 'reference slip rate', 'ReferenceSlipRate', lower=positive), &
+        law_constant('f0', '-', 'friction coefficient of steady sliding at v0', &
+        'ReferenceFriction', lower=0.0_wp), &
+        law_constant('evolution', '-', 'law by which theta evolves', 'StateEvolution', &
+        lower=0.0_wp, upper=1.0_wp, &
         optional=.true., whole=.true., words='ageing slip'), &
-        law_constant('theta_0', 'T', 'theta of a virgin point', lower=positive, optional=.true., &
+        law_constant('theta_0', 'T', 'theta of a virgin point', 'InitialState', &
+        lower=positive, optional=.true., &
         default_from=3, default_per=4)]
+
+    integer, parameter, public :: n_constants = size(rate_state_constants)
+    integer, parameter, public :: n_needed = 5   !! of them, those that extensions start with, too;
+                                                 !! the others have defaults
+
+    type(internal_variable), parameter, public :: state_variable = &
+        internal_variable('theta', 'T', exists=.true.)
+
+    type(law_description), parameter, public :: rate_state_description = law_description( &
+        name='rate_and_state', &
+        summary='Regularised rate-and-state friction, ageing or slip law', &
+        constants=constant_table(n_constants, [rate_state_constants, &
+        no_constants(n_constants + 1:)]), &
+        internal=state_variable)
 
     real(wp), parameter :: least_slip = 1.0e-100_wp   !! in units of d_c; see above
 
@@ -91,9 +106,6 @@ module friction_rate_state_law
     real(wp), parameter :: least_state = 1.0e-250_wp   !! v0 theta/d_c of a shifted law ends there
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
 
-    integer, parameter, public :: n_constants = size(rate_state_constants)
-    integer, parameter, public :: n_needed = 5   !! of them; the others have defaults
-
 contains
 
     pure subroutine read_constants(self, n, constants, n_own, status)
@@ -104,24 +116,26 @@ contains
         real(wp) :: c(n_constants)
 
         n_own = n_constants
-        status = friction_bad_size
-        if (n < n_needed) return
-        call self%read_common(constants(:n_needed), status)
+        call self%read_common(rate_state_constants, n_needed, n, constants, c, status)
         if (status < 0) return
-        call complete_constants(n_needed, rate_state_constants, n, constants, c, status)
-        if (status /= friction_ok) return
         self%evolution = int(c(6))
         self%theta_0 = c(7)
     end subroutine read_constants
 
-    !> Those that extensions have, too.
-    pure subroutine read_common(self, constants, status)
+    !> Completes the constants by their table and takes those that extensions have, too.
+    pure subroutine read_common(self, table, needed, n, constants, c, status)
         class(rate_state_law), intent(inout) :: self
-        real(wp), intent(in) :: constants(n_needed)   !! finite
-        integer, intent(out) :: status                !! ok or bad property
+        type(law_constant), intent(in) :: table(:)   !! starts with those of this law
+        integer, intent(in) :: needed                !! how many come first and have no default
+        integer, intent(in) :: n                     !! how many are given
+        real(wp), intent(in) :: constants(n)         !! finite
+        real(wp), intent(out) :: c(size(table))      !! all of them, if the status is ok
+        integer, intent(out) :: status               !! ok, bad size, or bad property
 
+        status = friction_bad_size
+        if (n < needed) return
         status = friction_bad_property
-        if (any(constants < rate_state_constants(:n_needed)%lower)) return
+        if (any(constants(:n_needed) < table(:n_needed)%lower)) return
         self%a = constants(1)
         self%b = constants(2)
         self%d_c = constants(3)
@@ -129,21 +143,8 @@ contains
         self%f0 = constants(5)
         self%alpha = 0.0_wp
         if (self%a < least_direct * max(self%b, self%f0)) return
-        status = friction_ok
+        call complete_constants(n_needed, table, n, constants, c, status)
     end subroutine read_common
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'rate_and_state'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = n_constants
-        constants%of(:n_constants) = rate_state_constants
-    end function constants
 
     pure function typical_coefficient(self) result(mu)
         class(rate_state_law), intent(in) :: self
@@ -151,12 +152,6 @@ contains
 
         mu = max(self%a, self%f0)
     end function typical_coefficient
-
-    pure function internal() result(variable)
-        type(internal_variable) :: variable
-
-        variable = internal_variable(name='theta', unit='T', exists=.true.)
-    end function internal
 
     !> It grows with the logarithm of the slip rate.
     pure function largest_coefficient(self) result(mu)

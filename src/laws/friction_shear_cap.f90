@@ -17,7 +17,8 @@ module friction_shear_cap
 
     !> The constant that every law takes after its own.
     type(law_constant), parameter, public :: cap_constants(1) = [ &
-        law_constant('tau_max', 'F/L^2', 'largest tangential traction; 0: none', lower=0.0_wp, &
+        law_constant('tau_max', 'F/L^2', 'largest tangential traction; 0: none', 'ShearCap', &
+        lower=0.0_wp, &
         optional=.true.)]
 
     type, extends(law_around) :: capped_law

@@ -13,11 +13,12 @@
 !> As without healing, the resistance is two straight lines over the slip, and convex: one root.
 module friction_slip_weakening_healing_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law_state, load_rates, sliding
-    use friction_law_constants, only : constant_table, law_constant, name_length
+    use friction_law, only : below, law_description, law_state, load_rates, sliding
+    use friction_law_constants, only : constant_table, law_constant, no_constants
     use friction_rate_state_core, only : mean_decay
     use friction_slip_weakening_core, only : coefficient_at, fall_at, slip_to_balance
-    use friction_slip_weakening_law, only : slip_weakening_constants, slip_weakening_law
+    use friction_slip_weakening_law, only : slip_variable, slip_weakening_constants, &
+        slip_weakening_law
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -28,8 +29,6 @@ module friction_slip_weakening_healing_law
         real(wp) :: xi   !! healing rate, >= 0 [1/T]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
         procedure :: healing_rate
         procedure :: rest
         procedure :: slide
@@ -40,7 +39,14 @@ module friction_slip_weakening_healing_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(4) = [slip_weakening_constants, &
-        law_constant('xi', '1/T', 'healing rate: how fast D falls with time', lower=0.0_wp)]
+        law_constant('xi', '1/T', 'healing rate: how fast D falls with time', 'HealingRate', &
+        lower=0.0_wp)]
+
+    type(law_description), parameter, public :: healing_description = &
+        law_description(name='slip_weakening_healing', &
+        summary='Friction that falls with slip, from mu_s to mu_k, and recovers with time', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]), &
+        internal=slip_variable)
 
     !> An increment of time as the law sees it.
     type :: healing
@@ -66,19 +72,6 @@ contains
         self%xi = constants(4)
         status = friction_ok
     end subroutine read_constants
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'slip_weakening_healing'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
 
     !> At rest the coefficient tends to mu_s at the rate xi.
     pure function healing_rate(self, state) result(rate)

@@ -8,9 +8,9 @@
 !> mapping is concave in the slip and positive at 0: it has one root, however steep the fall.
 module friction_slip_weakening_law
     use friction_kinds, only : wp
-    use friction_law, only : below, internal_variable, law_state, law_traits, load_rates, &
-        named_law, sliding
-    use friction_law_constants, only : constant_table, law_constant, name_length, positive
+    use friction_law, only : below, internal_variable, law_description, law_state, law_traits, &
+        load_rates, named_law, sliding
+    use friction_law_constants, only : constant_table, law_constant, no_constants, positive
     use friction_slip_weakening_core, only : coefficient_at, fall_at, slip_to_balance
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
@@ -24,9 +24,6 @@ module friction_slip_weakening_law
         real(wp) :: d_c    !! slip over which it falls, > 0 [L]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
-        procedure, nopass :: internal
         procedure :: typical_coefficient
         procedure :: kinetic_coefficient
         procedure :: virgin
@@ -41,10 +38,24 @@ module friction_slip_weakening_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter, public :: slip_weakening_constants(3) = [ &
-        law_constant('mu_s', '-', 'friction coefficient of a fresh surface', lower=0.0_wp, &
+        law_constant('mu_s', '-', 'friction coefficient of a fresh surface', 'StaticFriction', &
+        lower=0.0_wp, &
         not_below=2), &
-        law_constant('mu_k', '-', 'friction coefficient after the slip d_c', lower=0.0_wp), &
-        law_constant('d_c', 'L', 'slip over which friction falls', lower=positive)]
+        law_constant('mu_k', '-', 'friction coefficient after the slip d_c', 'KineticFriction', &
+        lower=0.0_wp), &
+        law_constant('d_c', 'L', 'slip over which friction falls', 'CriticalSlip', lower=positive)]
+
+    integer, parameter :: n_constants = size(slip_weakening_constants)
+
+    type(internal_variable), parameter, public :: slip_variable = &
+        internal_variable('D', 'L', exists=.true.)
+
+    type(law_description), parameter, public :: slip_weakening_description = law_description( &
+        name='slip_weakening', &
+        summary='Friction that falls with slip, linearly, from mu_s to mu_k, and stays there', &
+        constants=constant_table(n_constants, [slip_weakening_constants, &
+        no_constants(n_constants + 1:)]), &
+        internal=slip_variable)
 
 contains
 
@@ -66,31 +77,12 @@ contains
         status = friction_ok
     end subroutine read_constants
 
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'slip_weakening'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(slip_weakening_constants)
-        constants%of(:size(slip_weakening_constants)) = slip_weakening_constants
-    end function constants
-
     pure function typical_coefficient(self) result(mu)
         class(slip_weakening_law), intent(in) :: self
         real(wp) :: mu
 
         mu = self%mu_s
     end function typical_coefficient
-
-    pure function internal() result(variable)
-        type(internal_variable) :: variable
-
-        variable = internal_variable(name='D', unit='L', exists=.true.)
-    end function internal
 
     pure function kinetic_coefficient(self) result(mu)
         class(slip_weakening_law), intent(in) :: self

@@ -7,9 +7,9 @@
 !> resistance falls.
 module friction_static_kinetic_law
     use friction_kinds, only : wp
-    use friction_law, only : below, law_state, law_traits, load_rates, named_law, onset_drops, &
-        onset_yields, sliding
-    use friction_law_constants, only : constant_table, law_constant, name_length
+    use friction_law, only : below, law_description, law_state, law_traits, load_rates, named_law, &
+        onset_drops, onset_yields, sliding
+    use friction_law_constants, only : constant_table, law_constant, no_constants
     use friction_static_kinetic_core, only : decay_per_slip, excess_after
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
@@ -23,8 +23,6 @@ module friction_static_kinetic_law
         real(wp) :: d_c    !! decay, >= 0 [T/L]
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
         procedure :: typical_coefficient
         procedure :: kinetic_coefficient
         procedure :: rate_weakening
@@ -42,9 +40,16 @@ module friction_static_kinetic_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(3) = [ &
-        law_constant('mu_s', '-', 'friction coefficient at rest', lower=0.0_wp, not_below=2), &
-        law_constant('mu_k', '-', 'friction coefficient in fast sliding', lower=0.0_wp), &
-        law_constant('d_c', 'T/L', 'decay of friction with the slip rate', lower=0.0_wp)]
+        law_constant('mu_s', '-', 'friction coefficient at rest', 'StaticFriction', &
+        lower=0.0_wp, not_below=2), &
+        law_constant('mu_k', '-', 'friction coefficient in fast sliding', 'KineticFriction', &
+        lower=0.0_wp), &
+        law_constant('d_c', 'T/L', 'decay of friction with the slip rate', 'Decay', lower=0.0_wp)]
+
+    type(law_description), parameter, public :: static_kinetic_description = law_description( &
+        name='static_kinetic', &
+        summary='Friction that falls with the slip rate: mu_k + (mu_s - mu_k) exp(-d_c v)', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]))
 
 contains
 
@@ -65,19 +70,6 @@ contains
         self%d_c = constants(3)
         status = friction_ok
     end subroutine read_constants
-
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'static_kinetic'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
 
     pure function typical_coefficient(self) result(mu)
         class(static_kinetic_law), intent(in) :: self

@@ -13,10 +13,10 @@
 !> and `e = 1 - r`.
 module friction_subloading_law
     use friction_kinds, only : wp
-    use friction_law, only : internal_variable, law_state, law_traits, least_ratio, load_rates, &
-        named_law, onset_gradual, sliding, unbounded
+    use friction_law, only : internal_variable, law_description, law_state, law_traits, &
+        least_ratio, load_rates, named_law, onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
-        name_length, positive
+        no_constants, positive
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
     private
@@ -44,9 +44,6 @@ module friction_subloading_law
         integer :: u_of_r   !! which function U of R, one of those below
     contains
         procedure :: read => read_constants
-        procedure, nopass :: name
-        procedure, nopass :: constants
-        procedure, nopass :: internal
         procedure, nopass :: mobilises_cohesion
         procedure :: typical_coefficient
         procedure :: kinetic_coefficient
@@ -66,17 +63,31 @@ module friction_subloading_law
 
     !> Its own constants; in `props` they stand from place 4 on.
     type(law_constant), parameter :: table(8) = [ &
-        law_constant('mu_s', '-', 'static friction coefficient', lower=0.0_wp, not_below=2), &
-        law_constant('mu_k', '-', 'kinetic friction coefficient', lower=0.0_wp), &
-        law_constant('kappa', '1/L', 'loss of friction with slip', lower=0.0_wp), &
-        law_constant('xi', '1/T', 'recovery of friction with time', lower=0.0_wp), &
-        law_constant('m', '1/L', 'rate at which R approaches 1', lower=positive), &
-        law_constant('mu_0', '-', 'friction coefficient of a virgin point', lower=0.0_wp, &
+        law_constant('mu_s', '-', 'static friction coefficient', 'StaticFriction', &
+        lower=0.0_wp, not_below=2), &
+        law_constant('mu_k', '-', 'kinetic friction coefficient', 'KineticFriction', &
+        lower=0.0_wp), &
+        law_constant('kappa', '1/L', 'loss of friction with slip', 'AdhesionBreakingExponent', &
+        lower=0.0_wp), &
+        law_constant('xi', '1/T', 'recovery of friction with time', 'AdhesionFormingExponent', &
+        lower=0.0_wp), &
+        law_constant('m', '1/L', 'rate at which R approaches 1', 'SubloadingExponent', &
+        lower=positive), &
+        law_constant('mu_0', '-', 'friction coefficient of a virgin point', 'InitialFriction', &
+        lower=0.0_wp, &
         not_below=2, not_above=1, optional=.true., default_from=1), &
-        law_constant('scheme', '-', 'time integration', lower=0.0_wp, upper=1.0_wp, &
+        law_constant('scheme', '-', 'time integration', 'TimeIntegration', &
+        lower=0.0_wp, upper=1.0_wp, &
         optional=.true., whole=.true., words='backward_euler exact_rate'), &
-        law_constant('u_of_r', '-', 'evolution of R', lower=0.0_wp, upper=2.0_wp, not_beside=7, &
+        law_constant('u_of_r', '-', 'evolution of R', 'SubloadingEvolution', &
+        lower=0.0_wp, upper=2.0_wp, not_beside=7, &
         optional=.true., whole=.true., words='logarithm cotangent reciprocal')]
+
+    type(law_description), parameter, public :: subloading_description = law_description( &
+        name='subloading', &
+        summary='Time-dependent elastoplastic friction with a subloading surface', &
+        constants=constant_table(size(table), [table, no_constants(size(table) + 1:)]), &
+        internal=internal_variable('R', '-', exists=.true.))
 
     !> The next error of a third-order iteration is the cube of a step this small, that of Newton's
     !> method its square: round-off either way.
@@ -116,31 +127,12 @@ contains
         self%u_of_r = int(c(8))
     end subroutine read_constants
 
-    pure function name()
-        character(len=name_length) :: name
-
-        name = 'subloading'
-    end function name
-
-    pure function constants()
-        type(constant_table) :: constants
-
-        constants%n = size(table)
-        constants%of(:size(table)) = table
-    end function constants
-
     pure function typical_coefficient(self) result(mu)
         class(subloading_law), intent(in) :: self
         real(wp) :: mu
 
         mu = self%mu_s
     end function typical_coefficient
-
-    pure function internal() result(variable)
-        type(internal_variable) :: variable
-
-        variable = internal_variable(name='R', unit='-', exists=.true.)
-    end function internal
 
     !> As much of it as of the friction, R.
     pure function mobilises_cohesion() result(mobilises)

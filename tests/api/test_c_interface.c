@@ -261,6 +261,7 @@ static void laws_tell_their_constants(void)
     friction_law_facts law;
     friction_constant_facts constant;
     double value = 7;
+    char summary[81];
     const double rate_state[8] = {4, 1, 1, .01, .02, 6, 2, .4};
     int i;
 
@@ -279,6 +280,12 @@ static void laws_tell_their_constants(void)
           && strcmp(constant.words, "ageing slip") == 0 && strcmp(constant.default_text, "ageing") == 0);
     CHECK(friction_get_default(8, rate_state, 9, &value) == FRICTION_OK && value == 3);
     ranges_are_those_that_are_checked();
+    CHECK(friction_get_law_summary(2, 81, summary) == FRICTION_OK
+          && strcmp(summary, "Friction proportional to the pressure") == 0);
+    CHECK(friction_get_law_summary(2, 9, summary) == FRICTION_OK && strcmp(summary, "Friction") == 0);
+    CHECK(friction_get_law_summary(2, 0, summary) == FRICTION_BAD_SIZE
+          && friction_get_law_summary(0, 81, summary) == FRICTION_BAD_LAW
+          && friction_get_law_summary(2, 81, NULL) == FRICTION_NULL_POINTER && strcmp(summary, "Friction") == 0);
 
     CHECK(friction_get_law(0, &law) == FRICTION_BAD_LAW && friction_get_law(friction_law_count() + 1, &law) == FRICTION_BAD_LAW);
     CHECK(friction_get_law(1, NULL) == FRICTION_NULL_POINTER);
