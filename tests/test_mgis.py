@@ -4,40 +4,31 @@
 STICKSLIP_LIBRARY, STICKSLIP_MGIS: the shared libraries.
 """
 import importlib.util
+import itertools
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / 'hosts'))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE / 'hosts')]
 
 import friction_point  # noqa: E402
+import law_examples  # noqa: E402
 import mfront_loader  # noqa: E402
 
 MGIS = os.environ['STICKSLIP_MGIS']
+DOCS = HERE.parent / 'docs'
 ROOT2 = math.sqrt(2.0)
 STIFFNESSES = ['NormalStiffness', 'TangentialStiffness']
 LAYER = ['Thickness', 'InPlaneModulus']
 THICKNESS, MODULUS = 0.1, 3.0
 STATE = ['Status', 'NormalGap', 'ElasticShear1', 'ElasticShear2', 'FrictionCoefficient', 'Internal', 'Slip', 'DissipatedEnergy']
-# law: names of its constants after the stiffnesses, and the constants of friction_update
-LAWS = {
-    'Subloading': (['StaticFriction', 'KineticFriction', 'AdhesionBreakingExponent', 'AdhesionFormingExponent',
-                    'SubloadingExponent'], [1, 1000, 800, 0.45, 0.25, 8, 0.2, 60]),
-    'Coulomb': (['Friction'], [2, 1000, 800, 0.4]),
-    'StaticKinetic': (['StaticFriction', 'KineticFriction', 'Decay'], [3, 1000, 800, 0.45, 0.25, 1]),
-    'RateAndState': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction'],
-                     [4, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4]),
-    'SlipWeakening': (['StaticFriction', 'KineticFriction', 'CriticalSlip'], [5, 1000, 800, 0.45, 0.25, 1e-2]),
-    'SlipWeakeningHealing': (['StaticFriction', 'KineticFriction', 'CriticalSlip', 'HealingRate'],
-                             [6, 1000, 800, 0.45, 0.25, 1e-2, 1]),
-    'FlashHeating': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction', 'WeakFriction',
-                      'WeakeningSlipRate'], [7, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.25, 0.05]),
-    'LinkerDieterich': (['DirectEffect', 'EvolutionEffect', 'CriticalSlip', 'ReferenceSlipRate', 'ReferenceFriction',
-                         'PressureEffect'], [8, 1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.1]),
-}
+LAWS = {law.camel: law for law in law_examples.laws().values()}
+OPTIONS = ('tau_max', 'mu_ratio', 'direction', 'cohesion', 'eta_t')
 PLANE = ['Axisymmetrical', 'PlaneStress', 'PlaneStrain', 'GeneralisedPlaneStrain']
 # pressed, sheared, reversed, held, lifted, closed, sheared: total gap, normal first
 GAPS = [(-0.003, 0, 0), (-0.003, 3e-4, 1e-4), (-0.002, 1.2e-3, 4e-4), (-0.003, 3e-3, -2e-4), (-0.003, 2.5e-3, 1e-4),
@@ -45,13 +36,29 @@ GAPS = [(-0.003, 0, 0), (-0.003, 3e-4, 1e-4), (-0.002, 1.2e-3, 4e-4), (-0.003, 3
         (-0.004, 5e-3, 3e-3)]
 
 
-def behaviour(law, hypothesis, layer=False):
-    return mfront_loader.Behaviour(MGIS, f'StickSlip{law}' + ('Layer' if layer else ''), hypothesis)
+def promised_names(law):
+    """Names of the constants after the stiffnesses, and how many of them have no default: the page of the laws and that
+    of the options say so."""
+    names, needed = [], 0
+    for page, title in (('laws', rf'## {LAWS[law].number} [^\n]*'), ('law_options', '## Places and names')):
+        text = re.search(rf'^{title}\n(.*?)(?=^## |\Z)', (DOCS / f'{page}.md').read_text(), re.MULTILINE | re.DOTALL).group(1)
+        rows = re.findall(r'^\| ([^|]*) \|.*\| `([A-Za-z]+)` \|$', text, re.MULTILINE)
+        names += [name for _, name in rows]
+        needed += sum('optional' not in place for place, _ in rows) if page == 'laws' else 0
+    return names, needed
 
 
-def properties(law, layer=False, **changed):
-    names, props = LAWS[law]
-    values = dict(zip(STIFFNESSES + names, props[1:]))
+def behaviour(law, hypothesis, layer=False, options=False):
+    return mfront_loader.Behaviour(MGIS, f'StickSlip{law}' + ('Layer' if layer else '') + ('WithOptions' if options else ''),
+                                   hypothesis)
+
+
+def props_of(law, options=False):
+    return LAWS[law].props(*(OPTIONS if options else ()))
+
+
+def properties(law, layer=False, options=False, **changed):
+    values = dict(zip(behaviour(law, 'PlaneStrain', options=options).properties, props_of(law, options)[1:]))
     if layer:
         values.update(Thickness=THICKNESS, InPlaneModulus=MODULUS)
     return {**values, **changed}
@@ -92,36 +99,37 @@ class Mgis(unittest.TestCase):
         self.near(result.tangent[0], [lame + 2 * shear, lame, lame, 0, 0, 0], young)
 
     def test_names_and_kinds_are_those_promised(self):
-        for law, (names, _) in LAWS.items():
-            for layer in (False, True):
-                for hypothesis in PLANE + ['Tridimensional']:
-                    if layer and hypothesis == 'PlaneStress':
-                        continue
-                    with self.subTest(law=law, layer=layer, hypothesis=hypothesis):
-                        found = behaviour(law, hypothesis, layer)
-                        self.assertEqual(found.properties, (LAYER if layer else []) + STIFFNESSES + names)
-                        self.assertEqual([name for name, _ in found.variables], STATE)
-                        self.assertEqual({kind for _, kind in found.variables}, {0})
-                        self.assertEqual((found.external, found.parameters, found.energies), ([], [], (1, 1)))
-                        gradient, force, code = ('Strain', 'Stress', 1) if layer else ('OpeningDisplacement', 'CohesiveForce', 2)
-                        self.assertEqual((found.gradients, found.forces, found.blocks),
-                                         ([(gradient, code)], [(force, code)], [(force, gradient)]))
-                        self.assertEqual((found.type, found.kinematic), (1, 1) if layer else (3, 2))
-                        self.assertIn(hypothesis, found.names('ModellingHypotheses'))
-                        self.assertEqual(found.text('mfront_ept'), found.name)
-                        self.assertEqual(found.text('mfront_interface'), 'Generic')
+        for law, options, layer in itertools.product(LAWS, (False, True), (False, True)):
+            names, needed = promised_names(law)
+            names = names if options else names[:needed]
+            for hypothesis in PLANE + ['Tridimensional']:
+                if layer and hypothesis == 'PlaneStress':
+                    continue
+                with self.subTest(law=law, layer=layer, options=options, hypothesis=hypothesis):
+                    found = behaviour(law, hypothesis, layer, options)
+                    self.assertEqual(found.properties, (LAYER if layer else []) + STIFFNESSES + names)
+                    self.assertEqual([name for name, _ in found.variables], STATE)
+                    self.assertEqual({kind for _, kind in found.variables}, {0})
+                    self.assertEqual((found.external, found.parameters, found.energies), ([], [], (1, 1)))
+                    gradient, force, code = ('Strain', 'Stress', 1) if layer else ('OpeningDisplacement', 'CohesiveForce', 2)
+                    self.assertEqual((found.gradients, found.forces, found.blocks),
+                                     ([(gradient, code)], [(force, code)], [(force, gradient)]))
+                    self.assertEqual((found.type, found.kinematic), (1, 1) if layer else (3, 2))
+                    self.assertIn(hypothesis, found.names('ModellingHypotheses'))
+                    self.assertEqual(found.text('mfront_ept'), found.name)
+                    self.assertEqual(found.text('mfront_interface'), 'Generic')
 
-    def follow(self, law, hypothesis):
+    def follow(self, law, hypothesis, options):
         """Along the path, cohesive zone and layer against friction_update, point by point."""
         n = mfront_loader.DIMENSION[hypothesis]
-        zone = behaviour(law, hypothesis)
-        layer = None if hypothesis == 'PlaneStress' else behaviour(law, hypothesis, layer=True)
-        point = friction_point.FrictionPoint(LAWS[law][1])
+        zone = behaviour(law, hypothesis, options=options)
+        layer = None if hypothesis == 'PlaneStress' else behaviour(law, hypothesis, True, options)
+        point = friction_point.FrictionPoint(props_of(law, options))
         states, old = [[0.0] * 8, [0.0] * 8], [0.0] * n
         for gap in ([component for component in gap[:n]] for gap in GAPS):
             traction = point.update([a - b for a, b in zip(gap, old)], 0.1)
             tangent = point.tangent
-            result = zone.integrate(old, gap, properties(law), states[0], 0.1)
+            result = zone.integrate(old, gap, properties(law, options=options), states[0], 0.1)
             self.assertEqual(result.code, 1, result.message)
             self.near(result.forces, traction, 3.0)
             self.near(result.state, list(point.statev), 1.0)
@@ -131,13 +139,13 @@ class Mgis(unittest.TestCase):
             self.near(result.energies, [elastic, point.statev[7]], 1.0)
             states[0] = result.state
             if layer is not None:
-                states[1] = self.compare_layer(layer, law, (old, gap), states[1], (traction, tangent, elastic, point))
+                states[1] = self.compare_layer(layer, (law, options), (old, gap), states[1], (traction, tangent, elastic, point))
             old = gap
 
     def compare_layer(self, layer, law, gaps, state, expected):
         traction, tangent, elastic, point = expected
         start, end = (strain_of(gap, layer.hypothesis) for gap in gaps)
-        result = layer.integrate(start, end, properties(law, layer=True), state, 0.1)
+        result = layer.integrate(start, end, properties(law[0], True, law[1]), state, 0.1)
         self.assertEqual(result.code, 1, result.message)
         at, n = places(layer.hypothesis), len(traction)
         factor = [1.0] + [ROOT2] * (n - 1)
@@ -157,10 +165,9 @@ class Mgis(unittest.TestCase):
         return result.state
 
     def test_every_law_follows_friction_update_under_every_hypothesis(self):
-        for law in LAWS:
-            for hypothesis in PLANE + ['Tridimensional']:
-                with self.subTest(law=law, hypothesis=hypothesis):
-                    self.follow(law, hypothesis)
+        for law, options, hypothesis in itertools.product(LAWS, (False, True), PLANE + ['Tridimensional']):
+            with self.subTest(law=law, options=options, hypothesis=hypothesis):
+                self.follow(law, hypothesis, options)
 
     def test_the_operator_of_a_layer_is_the_derivative_of_its_stress(self):
         layer, constants = behaviour('Subloading', 'Tridimensional', layer=True), properties('Subloading', layer=True)

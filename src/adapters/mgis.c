@@ -1,8 +1,9 @@
 /* MFront's generic interface: what a host's loader (MGIS) reads in libstickslip_mgis.so, and the update.
  *
  * Two behaviours a law: StickSlip<Law>, a cohesive zone (OpeningDisplacement to CohesiveForce), and
- * StickSlip<Law>Layer, a thin layer of solid elements (Strain to Stress). The constants are material
- * properties, the state is in internal state variables (docs/hosts.md). */
+ * StickSlip<Law>Layer, a thin layer of solid elements (Strain to Stress); and the same with the ending WithOptions,
+ * which take the constants that may be left out, too. The constants are material properties, the state is in
+ * internal state variables (docs/hosts.md). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +37,7 @@ typedef struct {
 /* Bounds of numbers, those of friction.h's constants. */
 static const double least = 0x1p-333, largest = 0x1p333;
 
-enum { failed = -1, unreliable = 0, reliable = 1, message_size = 512, most_props = 10 };
+enum { failed = -1, unreliable = 0, reliable = 1, message_size = 512, most_props = 32 };
 
 /* Which stresses and strains of an element are the contact's, in MFront's order (xx yy zz xy xz yz, shear
  * times the square root of two). A cohesive zone has its components in the order of friction.h. */
@@ -67,8 +68,17 @@ static double factor(const geometry *form, int i)
     return form->layer && i > 0 ? sqrt(2.0) : 1.0;
 }
 
+static void elastic_tangent(const geometry *form, const double *props, double *tangent)
+{
+    int i;
+
+    memset(tangent, 0, 9 * sizeof *tangent);
+    for (i = 0; i < form->contact; i++)
+        tangent[i * (form->contact + 1)] = i == 0 ? props[1] : props[2];
+}
+
 /* A host that asks for the forces as they stand, with neither time nor motion, gets them also under a law of the
- * slip rate: in an instant nothing happens. */
+ * slip rate or with a damper: in an instant nothing happens, and the contact is elastic. */
 static int update(const double *du, double dt, const geometry *form, int nprops, const double *props, double *statev,
                   double *traction, double *tangent)
 {
@@ -78,18 +88,12 @@ static int update(const double *du, double dt, const geometry *form, int nprops,
     for (i = 0; status == FRICTION_ZERO_TIME_INCREMENT && i < form->contact; i++)
         if (du[i] != 0)
             return status;
-    if (status == FRICTION_ZERO_TIME_INCREMENT)
+    if (status == FRICTION_ZERO_TIME_INCREMENT) {
         status = friction_update(form->contact, du, instant, nprops, props, 8, statev, traction, tangent);
+        if (status >= 0)
+            elastic_tangent(form, props, tangent);
+    }
     return status;
-}
-
-static void elastic_tangent(const geometry *form, const double *props, double *tangent)
-{
-    int i;
-
-    memset(tangent, 0, 9 * sizeof *tangent);
-    for (i = 0; i < form->contact; i++)
-        tangent[i * (form->contact + 1)] = i == 0 ? props[1] : props[2];
 }
 
 /* The host's operator, from the contact's (column by column). In its plane a layer is elastic without
@@ -253,6 +257,7 @@ typedef const char *const text;
     int B##_##hypothesis(behaviour_data *data); \
     int B##_##hypothesis(behaviour_data *data) \
     { \
+        _Static_assert(own + 3 <= most_props, "room for the constants"); \
         return integrate(data, law, own, &form); \
     }
 
@@ -277,19 +282,10 @@ typedef const char *const text;
     ENTRY(B, GeneralisedPlaneStrain, law, own, layer_in_plane) \
     ENTRY(B, Tridimensional, law, own, layer_in_space)
 
-#define LAW(B, law, own, ...) \
-    ZONE(B, law, own, __VA_ARGS__) \
-    LAYER(B##Layer, law, own, __VA_ARGS__)
+#define PAIR(zone, layer, law, own, ...) \
+    ZONE(zone, law, own, __VA_ARGS__) \
+    LAYER(layer, law, own, __VA_ARGS__)
+#define BEHAVIOURS(B, ending, law, own, ...) PAIR(B##ending, B##Layer##ending, law, own, __VA_ARGS__)
 
-LAW(StickSlipSubloading, 1, 5, "StaticFriction", "KineticFriction", "AdhesionBreakingExponent",
-    "AdhesionFormingExponent", "SubloadingExponent")
-LAW(StickSlipCoulomb, 2, 1, "Friction")
-LAW(StickSlipStaticKinetic, 3, 3, "StaticFriction", "KineticFriction", "Decay")
-LAW(StickSlipRateAndState, 4, 5, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
-    "ReferenceFriction")
-LAW(StickSlipSlipWeakening, 5, 3, "StaticFriction", "KineticFriction", "CriticalSlip")
-LAW(StickSlipSlipWeakeningHealing, 6, 4, "StaticFriction", "KineticFriction", "CriticalSlip", "HealingRate")
-LAW(StickSlipFlashHeating, 7, 7, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
-    "ReferenceFriction", "WeakFriction", "WeakeningSlipRate")
-LAW(StickSlipLinkerDieterich, 8, 6, "DirectEffect", "EvolutionEffect", "CriticalSlip", "ReferenceSlipRate",
-    "ReferenceFriction", "PressureEffect")
+/* Made from the library's tables by mgis_behaviours.f90. */
+#include "mgis_behaviours.h"
