@@ -223,7 +223,9 @@ contains
         surface => chosen   ! part by part: a copy of the whole would wait as above
         call unpack_state(surface, sizes%ndir, statev, old, status)
         if (status < 0) return
-        storage%own%pressure_start = max(0.0_wp, -props(prop_alpha_n) * old%u_n)
+        if (old%u_n < -motion%blur_start) storage%own%pressure_start = -props(prop_alpha_n) &
+            * old%u_n
+        storage%own%pressure_blur = props(prop_alpha_n) * motion%blur
         if (.not. motion%dt > 0.0_wp) then
             status = friction_zero_time_increment
             if (surface%needs_time() .and. sheared(options%cohesion, motion, old)) return

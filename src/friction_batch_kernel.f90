@@ -530,8 +530,9 @@ contains
     end subroutine unpack
 
     !> The first equilibrium under the law, and under its shear cap. Where the law has one
-    !> equilibrium at most, the cap holds if and only if that is at less slip than takes the spring
-    !> down to the cap, or if the law does not let the surface slide at all.
+    !> equilibrium at most, the cap holds if and only if the law resists with more than that there,
+    !> or if it does not let the surface slide at all. (The slips at both say the same, but lose it
+    !> to round-off where the trial is far above the cap.)
     subroutine slide(task, constants, own_strength, block)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
@@ -557,11 +558,11 @@ contains
         if (task%kind == lane_ageing .or. task%kind == lane_slip_law) near = 1.0e-3_wp
         do i = 1, block%n
             block%trial(i) = trial(i)
-            slip = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
-            if (block%slip(i) < slip) held(i) = 1.0_wp
+            if (block%resistance(i) > constants(i, c_cap)) held(i) = 1.0_wp
             verge_of_cap = min(abs(block%resistance(i) - constants(i, c_cap)), abs(trial(i) &
                 - constants(i, c_cap))) - near * constants(i, c_cap)
             if (verge_of_cap <= 0.0_wp) block%left(i) = 1.0_wp
+            slip = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
             if (held(i) > 0.0_wp) block%slip(i) = slip
         end do
         if (any(held(:block%n) > 0.0_wp)) call hold_at_cap(task, constants, held, block)
@@ -818,6 +819,9 @@ contains
         end do
     end subroutine turn_direction
 
+    !> Where nothing slides, `t1` and `t2` are 0 and `stuck` is 1, else 0: with their squares this
+    !> is 1 less the other's square, without a difference that would leave round-off of a stiff
+    !> damper.
     subroutine write_answer(task, constants, trial, answer, traction, tangent)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
@@ -825,7 +829,7 @@ contains
         type(answer_block), intent(in) :: answer
         real(wp), intent(inout) :: traction(task%stride, task%ndir)
         real(wp), intent(inout) :: tangent(task%stride, task%ndir, task%ndir)
-        real(wp) :: t1, t2, across, turn, pull_1, pull_2
+        real(wp) :: t1, t2, across, stuck, turn, pull_1, pull_2
         integer :: i
 
         !GCC$ ivdep
@@ -833,15 +837,16 @@ contains
             t1 = answer%t1(i)
             t2 = answer%t2(i)
             across = answer%share(i) * constants(i, c_alpha_t)
+            stuck = merge(0.0_wp, 1.0_wp, trial%slides(i) > 0)
             turn = t1 * t2 * answer%squeezed(i) * across
-            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2) - across * t1
+            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2)
             traction(i, 1) = -trial%rest%pressure(i)
             traction(i, 2) = across * trial%q1(i)
             tangent(i, 1, 1) = merge(constants(i, c_alpha_n), 0.0_wp, &
                 trial%rest%pressure(i) > 0.0_wp)
             tangent(i, 2, 1) = answer%by_du_n(i) * t1
             tangent(i, 1, 2) = 0.0_wp
-            tangent(i, 2, 2) = across + t1 * pull_1
+            tangent(i, 2, 2) = across * (stuck + t2 * t2) + t1 * pull_1
         end do
         if (task%ndir == 2) return
         !GCC$ ivdep
@@ -849,15 +854,16 @@ contains
             t1 = answer%t1(i)
             t2 = answer%t2(i)
             across = answer%share(i) * constants(i, c_alpha_t)
+            stuck = merge(0.0_wp, 1.0_wp, trial%slides(i) > 0)
             turn = t1 * t2 * answer%squeezed(i) * across
-            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2) - across * t1
-            pull_2 = answer%coupling(i) * (answer%d_slip(i) * t2 - turn * t1) - across * t2
+            pull_1 = answer%coupling(i) * (answer%d_slip(i) * t1 + turn * t2)
+            pull_2 = answer%coupling(i) * (answer%d_slip(i) * t2 - turn * t1)
             traction(i, 3) = across * trial%q2(i)
             tangent(i, 3, 1) = answer%by_du_n(i) * t2
-            tangent(i, 3, 2) = t2 * pull_1
+            tangent(i, 3, 2) = t2 * (pull_1 - across * t1)
             tangent(i, 1, 3) = 0.0_wp
-            tangent(i, 2, 3) = t1 * pull_2
-            tangent(i, 3, 3) = across + t2 * pull_2
+            tangent(i, 2, 3) = t1 * (pull_2 - across * t2)
+            tangent(i, 3, 3) = across * (stuck + t1 * t1) + t2 * pull_2
         end do
     end subroutine write_answer
 

@@ -77,9 +77,13 @@ module friction_law
         logical :: follows_path
 
         !> Contact pressure at the start of the increment, 0 while open, for laws whose state
-        !> depends on how the pressure changes. Whoever takes a point through an increment sets it.
-        !> [F/L^2]
+        !> depends on how the pressure changes. Whoever takes a point through an increment sets it;
+        !> otherwise it is 0. [F/L^2]
         real(wp) :: pressure_start
+
+        !> Round-off of the pressure at the end, where that is more than its own, else 0: up to it
+        !> there may as well be none. Set along with the pressure at the start. [F/L^2]
+        real(wp) :: pressure_blur
 
         !> The largest tangential traction that the surface carries (module friction_shear_cap);
         !> huge for none. Whoever makes a law for use sets it. [F/L^2]

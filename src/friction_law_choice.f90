@@ -217,6 +217,7 @@ contains
         own%follows_path = .false.
         own%tau_max = huge(own%tau_max)
         own%cohesion = 0.0_wp
+        own%pressure_start = 0.0_wp
         if (number == law_subloading) call choose_form(storage, own)
         storage%own => own
     end subroutine choose_own_law

@@ -242,7 +242,7 @@ contains
         real(wp) :: fall
 
         fall = 0.0_wp
-        if (.not. min(pressure, self%pressure_start) > 0.0_wp) return
+        if (.not. pressed_throughout(self, pressure)) return
         fall = self%alpha / self%b * (log(pressure) - log(self%pressure_start))
         fall = max(-most_pressing, min(fall, most_pressing))
     end function pressing
@@ -253,9 +253,18 @@ contains
         real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
         logical :: presses
 
-        presses = min(pressure, self%pressure_start) > 0.0_wp
+        presses = pressed_throughout(self, pressure)
         if (presses) presses = abs(pressing(self, pressure)) < most_pressing
     end function presses
+
+    !> Is there a pressure both at the start and at the end of the increment?
+    pure function pressed_throughout(self, pressure) result(pressed)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
+        logical :: pressed
+
+        pressed = self%pressure_start > 0.0_wp .and. pressure > self%pressure_blur
+    end function pressed_throughout
 
     !> A sudden change of the pressure.
     pure function pressed(self, state, before, after) result(new)

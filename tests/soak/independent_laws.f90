@@ -8,7 +8,8 @@ module independent_laws
     private
 
     public :: creeps, evolution_misfits, healed_slip, is_sheared, load_case, material, &
-        mean_decay, pulled, read_increment, read_material, rested_strength, resistance_of
+        mean_decay, pulled, read_increment, read_material, rested_state, rested_strength, &
+        resistance_of
 
     !> What `props` says.
     type :: material
@@ -134,9 +135,10 @@ contains
             if (mat%law == 7) this%r = mat%own(9)
             if (mat%law == 8) this%r = mat%own(8)
         end if
-        this%pressing = 0.0_qp
-        if (mat%law == 8 .and. closed .and. old(2) < 0.0_dp) this%pressing = max(-200.0_qp, &
-            min(mat%own(6) / mat%own(2) * log(this%p / (-mat%alpha_n * old(2))), 200.0_qp))
+        this%pressing = 0.0_qp   ! from no pressure, or to none, the equation says nothing
+        if (mat%law == 8 .and. this%p > 0.0_qp .and. old(2) < 0.0_dp) this%pressing = &
+            max(-200.0_qp, min(mat%own(6) / mat%own(2) * log(this%p / (-mat%alpha_n &
+            * old(2))), 200.0_qp))
         if (.not. closed) return
         this%mu_rest = mu_after(mat, this, 0.0_qp)
         this%r_start = this%r
@@ -175,6 +177,26 @@ contains
         strength = this%mu_rest * this%p + mat%cohesion
         if (mat%law == 1) strength = max(this%r_start, 1.0e-100_qp) * strength
     end function rested_strength
+
+    !> Internal variables after an increment without slip; R of law 1, which then follows from the
+    !> traction, is 0.
+    function rested_state(mat, this) result(state)
+        type(material), intent(in) :: mat
+        type(load_case), intent(in) :: this
+        real(qp) :: state(2)   !! mu, r
+
+        state(1) = mu_after(mat, this, 0.0_qp)
+        state(2) = 0.0_qp
+        select case (mat%law)
+        case (4, 7, 8)
+            state(2) = min(exp(ln_theta(mat, this, 0.0_qp)), largest)
+        case (5)
+            state(2) = this%r
+        case (6)
+            state(2) = healed_slip(mat, this, 0.0_qp)
+        case default   ! nothing else evolves
+        end select
+    end function rested_state
 
     !> Does law or damper need time for this increment?
     function is_sheared(mat, u_et, du) result(sheared)

@@ -4,7 +4,7 @@ module path_checks
     use friction_mod, only : friction_update
     use independent_laws, only : creeps, evolution_misfits, healed_slip, is_sheared, &
         load_case, material, mean_decay, pulled, read_increment, read_material, resistance_of, &
-        rested_strength
+        rested_state, rested_strength
     use quad_friction_mod, only : quad_update => friction_update
     implicit none
     private
@@ -121,6 +121,7 @@ contains
         call read_increment(mat, t%du, t%dt, t%old, t%given, t%pressure, this, closed)
         if (.not. closed) then
             if (any(abs(t%traction) > 0.0_dp)) kind_ = k_traction
+            if (.not. rests(t, mat, this)) kind_ = k_equation
             return
         end if
         tau = t%traction(2:3)
@@ -139,11 +140,11 @@ contains
             if (trial > strength * (1.0_qp + 200.0_qp * eps) + this%stiffness * (error &
                 + 1.0e-280_qp) * max(1.0_qp, 1.0_qp / mat%rho)) return
             kind_ = k_equation
+            if (.not. rests(t, mat, this)) return
             full = this%mu_rest * this%p + mat%cohesion
             if (mat%law == 1 .and. full > 0.0_qp) then
                 if (abs(t%new(6) - min(1.0_qp, trial / full)) > 64.0_qp * eps * (1.0_qp &
                     + this%stiffness * error / max(eps, full))) return
-                if (abs(t%new(5) - this%mu_rest) > 32.0_qp * eps * mat%own(1)) return
             end if
             kind_ = 0
         else
@@ -152,6 +153,24 @@ contains
             kind_ = sliding_fault(t, mat, this, tau, slid, equivalent, trial, residual)
         end if
     end function check_equations
+
+    !> Are the internal variables those after a time without slip? R of a closed contact is another
+    !> matter.
+    logical function rests(t, mat, this)
+        type(trial_of), intent(in) :: t
+        type(material), intent(in) :: mat
+        type(load_case), intent(in) :: this
+        real(qp) :: state(2), share
+
+        state = rested_state(mat, this)
+        rests = abs(t%new(5) - state(1)) <= 32.0_qp * eps * mat%own(1)
+        if (mat%law == 1 .and. nint(t%new(1)) < 3) return
+        share = 64.0_qp * eps
+        if (mat%law == 6) share = share * (1.0_qp + mat%own(4) * this%dt)
+        if (mat%law == 8) share = share * (1.0_qp + mat%own(6) / mat%own(2) &
+            * abs(log(max(this%p, 1.0e-300_qp))))   ! a difference of two logarithms
+        rests = rests .and. abs(t%new(6) - state(2)) <= share * state(2) + tiny(1.0_dp)
+    end function rests
 
     !> The same of an increment that slips.
     integer function sliding_fault(t, mat, this, tau, slid, equivalent, trial, residual) &

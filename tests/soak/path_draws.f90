@@ -153,8 +153,7 @@ contains
         if (chance(0.5_dp)) own(n + 1) = 0.0_dp
         n = n + 2
         if (chance(0.3_dp)) return
-        ! the state of law 8 at zero pressure, which only cohesion reaches, is not compared yet
-        this%cohesive = chance(0.6_dp) .and. nint(this%props(1)) /= 8
+        this%cohesive = chance(0.6_dp)
         if (this%cohesive) own(n + 1) = this%props(3) * this%reach * decade(this%half)
         this%damped = chance(0.5_dp)
         if (this%damped) own(n + 2) = this%props(3) * this%time * decade(this%half)

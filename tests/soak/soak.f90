@@ -235,13 +235,14 @@ contains
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: state(8), traction(:)
         real(dp) :: apart
-        real(dp) :: force, length, condition, inner(2)
+        real(dp) :: force, length, condition, inner(2), damper
+        integer :: m
 
-        force = max(abs(t%traction(1)), norm2(t%traction(2:3)), t%props(3) * norm2(t%old(3:4)), &
-            tiny(force))
+        m = size(traction)
         length = max(norm2(t%old(3:4)) + norm2(t%du(2:3)), tiny(length))
-        force = max(force, viscous_of(t) * length)
-        apart = maxval(abs(traction - t%traction(:size(traction)))) / force
+        ! Round-off of the displacements changes the traction by the tangent.
+        force = max(norm2(t%traction), maxval(abs(t%tangent(2:m, 2:m))) * length, tiny(force))
+        apart = maxval(abs(traction - t%traction(:m))) / force
         apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)))))
         condition = 1.0_dp
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
@@ -253,7 +254,8 @@ contains
         if (creeps(nint(t%props(1)))) condition = condition + blur_of_state(t, length) / 300.0_dp
         apart = max(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
-        apart = max(apart, abs(state(8) - t%new(8)) / max(force * length + t%new(8), &
+        damper = viscous_of(t) * (norm2(t%new(3:4) - t%old(3:4)) + epsilon(damper) * length)
+        apart = max(apart, abs(state(8) - t%new(8)) / max((force + damper) * length + t%new(8), &
             1.0e-300_dp))
     end function distance
 
@@ -277,13 +279,13 @@ contains
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: tangent(:, :)
         real(dp) :: apart
-        real(dp) :: stiff
+        real(dp) :: largest_
         integer :: m
 
         m = size(tangent, 1)
-        stiff = max(t%props(2), t%props(3) + viscous_of(t))
-        apart = maxval(abs(tangent - t%tangent(:m, :m))) / max(stiff, maxval(abs(tangent))**2 &
-            / stiff)
+        largest_ = max(t%props(2), t%props(3), maxval(abs(tangent)))
+        apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * max(1.0_dp, largest_ &
+            / max(t%props(2), t%props(3) + viscous_of(t))))
     end function tangent_distance
 
     !> The same increment in a turned frame; its state is taken again.
@@ -295,6 +297,8 @@ contains
 
         if (t%status < 0) return
         if (abs(t%new(2)) < 1.0e-10_dp * (norm2(t%du) + norm2(t%old(2:4)))) return   ! open or not?
+        if (nint(t%props(1)) == 8 .and. abs(t%old(2)) > 0.0_dp .and. abs(t%old(2)) < 1.0e-10_dp &
+            * norm2(t%old(2:4))) return   ! a pressure or none?
         if (norm2(t%old(3:4)) < 1.0e-12_dp * abs(t%old(2))) return   ! its direction gets lost
         q = random_rotation()
         state = t%old
