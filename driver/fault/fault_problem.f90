@@ -6,7 +6,9 @@ module fault_problem
     use fault_energy, only : energies, power_loading, power_radiated, power_slip
     use fault_settings, only : fault_plan
     use friction_mod, only : read_surface, sliding_surface
+    use plane_medium, only : plane_surroundings
     use processes, only : team
+    use strike_slip_half_space, only : vertical_half_space
     use whole_space, only : full_space
     implicit none
     private
@@ -80,20 +82,24 @@ contains
     subroutine surround(self, together)
         class(fault), intent(inout) :: self
         type(team), intent(inout) :: together
-        type(half_space), allocatable :: half
-        type(full_space), allocatable :: full
+        type(half_space), allocatable :: antiplane
+        class(plane_surroundings), allocatable :: plane
 
         associate (plan => self%plan)
             if (plan%geometry == 'antiplane_half') then
-                allocate (half)
-                call half%create(self%part, plan%shear_modulus, plan%dz())
-                call move_alloc(half, self%surroundings)
-            else
-                allocate (full)
-                call full%create(together, self%part, [plan%shear_modulus, plan%poisson], &
-                    plan%dx(), plan%dz())
-                call move_alloc(full, self%surroundings)
+                allocate (antiplane)
+                call antiplane%create(self%part, plan%shear_modulus, plan%dz())
+                call move_alloc(antiplane, self%surroundings)
+                return
             end if
+            if (plan%geometry == 'half') then
+                allocate (vertical_half_space :: plane)
+            else
+                allocate (full_space :: plane)
+            end if
+            call plane%create(together, self%part, [plan%shear_modulus, plan%poisson], plan%dx(), &
+                plan%dz())
+            call move_alloc(plane, self%surroundings)
         end associate
     end subroutine surround
 

@@ -22,6 +22,7 @@ module fault_reader
 
     character(len=*), parameter :: group = 'fault'
     character(len=1), parameter :: axes(2) = ['x', 'z']
+    character(len=*), parameter :: along_strike = "belongs to geometry = 'half' or 'whole'"
 
 contains
 
@@ -51,7 +52,7 @@ contains
         real(dp), parameter :: most_cells = 2.0e9_dp
 
         call file%get_choice(group, 'geometry', plan%geometry, ['antiplane_half', &
-            'whole         '], default='antiplane_half')
+            'half          ', 'whole         '], default='antiplane_half')
         call file%get_integer(group, 'nz', plan%nz, between(2.0_dp, 1.0e8_dp), default=0)
         call file%require(group, 'nz')
         call file%get_real(group, 'width', plan%width, above(0.0_dp))
@@ -59,9 +60,9 @@ contains
         call file%get_real(group, 'wave_speed', plan%wave_speed, above(0.0_dp))
         call file%get_real(group, 'plate_rate', plan%plate_rate, at_least(0.0_dp))
         if (plan%geometry == 'antiplane_half') then
-            call file%belongs_elsewhere(group, 'nx', "belongs to geometry = 'whole'")
-            call file%belongs_elsewhere(group, 'length', "belongs to geometry = 'whole'")
-            call file%belongs_elsewhere(group, 'poisson', "belongs to geometry = 'whole'")
+            call file%belongs_elsewhere(group, 'nx', along_strike)
+            call file%belongs_elsewhere(group, 'length', along_strike)
+            call file%belongs_elsewhere(group, 'poisson', along_strike)
         else
             call file%get_integer(group, 'nx', plan%nx, between(2.0_dp, 1.0e8_dp), default=0)
             call file%require(group, 'nx')
@@ -230,7 +231,7 @@ contains
         if (any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
             'must be from 0 to width')
         if (plan%geometry == 'antiplane_half') then
-            call file%belongs_elsewhere('output', 'stations_x', "belongs to geometry = 'whole'")
+            call file%belongs_elsewhere('output', 'stations_x', along_strike)
             plan%station_x = 0.0_dp * plan%station_z
         else
             call file%get_reals('output', 'stations_x', plan%station_x, any_number())

@@ -9,7 +9,7 @@ module fault_settings
     public :: fault_plan
 
     type :: fault_plan
-        character(len=:), allocatable :: geometry   !! 'antiplane_half' or 'whole'
+        character(len=:), allocatable :: geometry   !! 'antiplane_half', 'half', 'whole'
         integer :: nx = 1, nz = 1                   !! cells along strike, in depth
         real(dp) :: length = 1.0_dp                 !! along strike; 1 for antiplane strain [L]
         real(dp) :: width = 0.0_dp                  !! in depth [L]
