@@ -1,12 +1,12 @@
 !> One row of the table of a sweep: the values of its keys, and what the run has come to.
 module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use linear_stability, only : analyse, stability, undecided, verdicts
     use number_text, only : quoted_field, short_text
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
     use run_warnings, only : find_warnings, run_warning
     use steady_sliding, only : sliding_case, take_piece
+    use linear_stability, only : analyse, stability, undecided, verdicts
     use sweep_settings, only : sweep_axis
     implicit none
     private
