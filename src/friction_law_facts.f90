@@ -201,6 +201,8 @@ contains
         character(len=text_length), intent(out) :: text    !! 'm must be > 0', ...; blank if ok
         integer, intent(out) :: status   !! ok, bad size, bad law, or bad property
         type(constant_table) :: table
+        type(law_storage), target :: storage
+        class(named_law), pointer :: own
         real(wp) :: full(size(table%of))
         type(text_line) :: line
 
@@ -238,9 +240,10 @@ contains
             text = line%text
             return
         end do
+        call choose_own_law(size(props), props, storage, own, place, status)
         place = 0
         text = ' '
-        status = friction_ok
+        if (status < 0) text = 'the constants are too far apart in size for the arithmetic'
     end subroutine friction_check
 
     !> Is a number finite and not too large? Silent where a comparison with NaN raises a
