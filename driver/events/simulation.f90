@@ -5,7 +5,7 @@ module simulation
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_observer, only : chain_watch
-    use chain_settings, only : displaced, scattered
+    use chain_settings, only : displaced, load_factors
     use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
         statev_u_et
     use integrator_choice, only : choose_integrator
@@ -48,7 +48,8 @@ contains
             run%chain%coupling, run%chain%ends)
         system%across = run%across
         system%across%rest = -run%drive%normal_traction(0.0_dp, 1) / run%props(prop_alpha_n)
-        if (run%chain%scatter > 0.0_dp) system%load = scattered(run%chain)
+        if (run%chain%loads_differ()) system%load = load_factors(run%chain)
+        if (allocated(run%chain%constants)) system%constants = run%chain%constants
         call live%chain_events%prepare(run)
         call live%slip_events%prepare(run)
         live%problem = ''

@@ -9,25 +9,23 @@ module law_input
     implicit none
     private
 
-    public :: read_friction, refuse_orthotropy
+    public :: range_of, read_friction, read_law, refuse_orthotropy
 
     character(len=*), parameter :: group = 'friction'
 
 contains
 
     !> Constants of the friction law in the order of `props`; every fault is left in `file%faults`.
-    subroutine read_friction(file, props)
+    subroutine read_friction(file, props, means)
         type(namelist_file), intent(inout) :: file
         real(dp), allocatable, intent(out) :: props(:)
-        character(len=:), allocatable :: law
-        character(len=len(friction_law_name(1))) :: names(friction_law_count)
+        logical, intent(in), optional :: means   !! true: of constants that the caller checks
+                                                 !! against each other, place by place
         type(constant_table) :: table
         integer :: faults_before, number, place
 
         faults_before = size(file%faults)
-        names = [(friction_law_name(number), number = 1, friction_law_count)]
-        call file%get_choice(group, 'law', law, names, default=trim(names(1)))
-        number = max(1, friction_law_number(law))
+        call read_law(file, number)
         table = friction_constants(number)
         allocate (props(table%n))
         props = 0.0_dp
@@ -36,9 +34,24 @@ contains
             call read_constant(file, table%of(place), place, props)
         end do
         call point_to_other_laws(file)
+        if (present(means)) then
+            if (means) return
+        end if
         if (size(file%faults) == faults_before .and. file%has_group(group)) call check(file, &
             table, props)
     end subroutine read_friction
+
+    !> The number of the law; that of the first one, if there is something wrong with its name.
+    subroutine read_law(file, number)
+        type(namelist_file), intent(inout) :: file
+        integer, intent(out) :: number
+        character(len=:), allocatable :: law
+        character(len=len(friction_law_name(1))) :: names(friction_law_count)
+
+        names = [(friction_law_name(number), number = 1, friction_law_count)]
+        call file%get_choice(group, 'law', law, names, default=trim(names(1)))
+        number = max(1, friction_law_number(law))
+    end subroutine read_law
 
     !> A constant that is given although it belongs to another law is told so.
     subroutine point_to_other_laws(file)
@@ -62,9 +75,7 @@ contains
         real(dp), intent(inout) :: props(:)   !! those before it are known
         type(rule) :: allowed
 
-        allowed = at_least(this%lower)
-        if (this%lower > 0.0_dp) allowed = above(0.0_dp)
-        if (this%upper < huge(this%upper)) allowed = between(this%lower, this%upper)
+        allowed = range_of(this)
         if (this%whole) then
             call read_choice(file, this, props(place))
         else if (this%optional) then
@@ -74,6 +85,16 @@ contains
             call file%get_real(group, trim(this%name), props(place), allowed)
         end if
     end subroutine read_constant
+
+    !> The rule of a constant by itself.
+    pure function range_of(this) result(allowed)
+        type(law_constant), intent(in) :: this
+        type(rule) :: allowed
+
+        allowed = at_least(this%lower)
+        if (this%lower > 0.0_dp) allowed = above(0.0_dp)
+        if (this%upper < huge(this%upper)) allowed = between(this%lower, this%upper)
+    end function range_of
 
     !> A constant that has words for its values.
     subroutine read_choice(file, this, value)

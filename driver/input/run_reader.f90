@@ -2,12 +2,12 @@
 module run_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : mix
+    use block_reader, only : check_blocks_at_start, read_block_friction
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
     use friction_mod, only : facts => law_facts, friction_facts, onset_gradual
     use law_facts, only : has_r, typical_strength
-    use law_input, only : read_friction, refuse_orthotropy
-    use loading_programme, only : programme
+    use law_input, only : refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
     use unit_reader, only : read_units
@@ -25,9 +25,10 @@ contains
         real(dp) :: normal
 
         call file%require_groups(['friction', 'slider  ', 'drive   ', 'time    '])
-        call read_friction(file, run%props)
-        call refuse_orthotropy(file)
         call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
+        call read_chain(file, run%mass, run%chain)
+        call read_block_friction(file, run)
+        call refuse_orthotropy(file)
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
         call file%get_real('slider', 'damping', run%damping, at_least(0.0_dp), default=0.0_dp)
         call file%get_real('slider', 'area', run%area, above(0.0_dp), default=1.0_dp)
@@ -42,7 +43,6 @@ contains
         call read_initial(file, run)
         call read_time(file, run)
         call check_scale(file, run)
-        call read_chain(file, run%mass, run%chain)
         if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
             'normal_mass', 'is for one block')
         call read_contact(file, run)
@@ -56,7 +56,7 @@ contains
             default=60.0_dp)
         call read_fields(file, run)
         call file%refuse_unknown()
-        run%fingerprint = fingerprint_of(file%listing(without='sweep'), run%drive)
+        run%fingerprint = fingerprint_of(file%listing(without='sweep'), run)
     end subroutine read_settings
 
     !> Mass, spring and damper across the interface. The springs of both directions are one: its
@@ -98,14 +98,14 @@ contains
     end subroutine read_events
 
     !> A number that is another one for any other input, but for keys that change no results.
-    pure function fingerprint_of(listing, drive) result(number)
+    pure function fingerprint_of(listing, run) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
-        type(programme), intent(in) :: drive      !! files that they name included
+        type(settings), intent(in) :: run         !! files that they name included
         integer(int64) :: number
         character(len=19), parameter :: without(5) = ['&output checkpoint ', &
             '&output table_limit', '&output length_unit', '&output force_unit ', &
             '&output time_unit  ']
-        integer :: start, length, i
+        integer :: start, length, i, k
 
         number = 0
         start = 1
@@ -118,9 +118,16 @@ contains
             end associate
             start = start + length
         end do
-        if (.not. allocated(drive%start)) return
-        call mix(transfer([drive%start, drive%velocity, drive%acceleration, drive%normal, &
-            drive%normal_rate], [number]), number)
+        if (allocated(run%chain%load)) call mix(transfer(run%chain%load, [number]), number)
+        if (allocated(run%chain%constants)) then
+            do k = 1, size(run%chain%constants, 2)
+                call mix(transfer(run%chain%constants(:, k), [number]), number)
+            end do
+        end if
+        associate (drive => run%drive)
+            if (allocated(drive%start)) call mix(transfer([drive%start, drive%velocity, &
+                drive%acceleration, drive%normal, drive%normal_rate], [number]), number)
+        end associate
     end function fingerprint_of
 
     !> A tolerance that is a part of nothing cannot be met.
@@ -194,6 +201,7 @@ contains
             call file%get_real(group, 'spring_force', start%spring_force, any_number(), &
                 default=0.0_dp)
             start%spring_given = file%given(group, 'spring_force')
+            call check_blocks_at_start(file, run)
             if (run%mass <= 0.0_dp) then
                 call file%refuse(group, 'spring_force', &
                     'needs a mass > 0: without, it is the friction force')
@@ -209,23 +217,26 @@ contains
         character(len=*), parameter :: group = 'initial'
         character(len=:), allocatable :: key
         type(facts) :: law
+        logical :: alike   ! or what they can have is asked block by block
 
         law = friction_facts(run%props)
+        alike = .not. (allocated(run%chain%constants) .or. run%chain%loads_differ())
         associate (start => run%initial)
             start%has_r = has_r(run%props)
+            start%mu_given = file%given(group, 'mu')
             call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
             if (start%has_r) then
                 key = 'r'
                 call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), &
                     default=law%virgin_mu)
-                if (start%mu < law%kinetic_coefficient .or. start%mu > law%largest_coefficient) then
-                    call file%reject(group, 'mu', 'must be from mu_k to mu_s')
-                end if
+                if (alike .and. (start%mu < law%kinetic_coefficient .or. start%mu &
+                    > law%largest_coefficient)) call file%reject(group, 'mu', &
+                    'must be from mu_k to mu_s')
             else
                 key = 'mu'
                 call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=0.0_dp)
                 start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
-                if (start%mu > law%largest_coefficient) call file%reject(group, 'mu', &
+                if (alike .and. start%mu > law%largest_coefficient) call file%reject(group, 'mu', &
                     'must not exceed the static friction coefficient')
                 call file%refuse(group, 'r', 'belongs to the law subloading')
             end if
@@ -233,6 +244,7 @@ contains
             if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
                 call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
             end if
+            if (.not. alike) return
             if (start%r * (start%mu * run%drive%normal_traction(0.0_dp, 1) + merge(law%cohesion, &
                 0.0_dp, start%has_r)) > law%shear_cap) then
                 call file%reject(group, key, 'makes a friction force above tau_max')

@@ -1,11 +1,12 @@
-!> A chain of blocks: what couples them, and how their strengths and their first places scatter.
+!> A chain of blocks: what couples them, in what they differ, and how their first places scatter.
 module chain_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use archive_file, only : mix
     use slider_system, only : ends_free
     implicit none
     private
 
-    public :: chain, displaced, scattered
+    public :: chain, displaced, load_factors, scatter_of_constant
 
     type :: chain
         integer :: n_blocks = 1
@@ -15,17 +16,47 @@ module chain_settings
         real(dp) :: displacement_scatter = 0.0_dp   !! of the blocks' places at the start [L]
         integer :: seed = 1
         real(dp) :: slip_rate = 0.0_dp   !! from which on slip belongs to an event [L/T]
+        real(dp), allocatable :: load(:)   !! normal traction of each block by a profile, relative
+                                           !! to their mean; 1 if not allocated [-]
+        real(dp), allocatable :: constants(:, :)   !! of friction, one row a block, in the order of
+                                                   !! `props`; not allocated: all have the same
+        integer, allocatable :: differing(:)       !! which of them were given block by block
+    contains
+        procedure :: loads_differ
     end type chain
 
 contains
 
-    !> Factors of the blocks' normal traction, from 1 - scatter to 1 + scatter.
-    pure function scattered(blocks) result(factors)
+    pure function loads_differ(self) result(yes)
+        class(chain), intent(in) :: self
+        logical :: yes
+
+        yes = self%scatter > 0.0_dp .or. allocated(self%load)
+    end function loads_differ
+
+    !> Factors of the blocks' normal traction: of the profile, and from 1 - scatter to 1 + scatter.
+    pure function load_factors(blocks) result(factors)
         type(chain), intent(in) :: blocks
         real(dp), allocatable :: factors(:)   !! one a block [-]
 
         factors = 1.0_dp + blocks%scatter * random_numbers(blocks%seed, 0_int64, blocks%n_blocks)
-    end function scattered
+        if (allocated(blocks%load)) factors = factors * blocks%load
+    end function load_factors
+
+    !> Factors of a constant of friction, from 1 - scatter to 1 + scatter. Each constant has random
+    !> numbers of its own, whatever else scatters.
+    pure function scatter_of_constant(blocks, name, scatter) result(factors)
+        type(chain), intent(in) :: blocks
+        character(len=*), intent(in) :: name   !! of the constant
+        real(dp), intent(in) :: scatter        !! relative [-]
+        real(dp) :: factors(blocks%n_blocks)   !! one a block [-]
+        integer(int64) :: stream
+        integer :: i
+
+        stream = 0
+        call mix([(int(iachar(name(i:i)), int64), i = 1, len(name))], stream)
+        factors = 1.0_dp + scatter * random_numbers(blocks%seed, stream, blocks%n_blocks)
+    end function scatter_of_constant
 
     !> What the blocks' places at the start differ from a common one.
     pure function displaced(blocks) result(by)

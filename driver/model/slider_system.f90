@@ -10,9 +10,9 @@ module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
-        friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
-        statev_r, statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : facts => law_facts, friction_facts, friction_ok, &
+        friction_snap_back, friction_update, friction_update_batch, prop_alpha_n, prop_alpha_t, &
+        statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, statev_u_n
     use law_facts, only : cohesion
     implicit none
     private
@@ -50,9 +50,12 @@ module slider_system
         real(dp) :: walls(2) = 0.0_dp                !! where they stand [L]
         real(dp), allocatable :: load(:)   !! normal traction of each block, relative to that of the
                                            !! programme; all 1 if not allocated [-]
+        real(dp), allocatable :: constants(:, :)   !! `props` of each block, one row a block; the
+                                                   !! last ones may be left out if they have their
+                                                   !! defaults. Not allocated: all have `props`
         type(normal_motion) :: across = normal_motion()
     contains
-        procedure :: add_coupling, coupling_energy
+        procedure :: add_coupling, coupling_energy, props_of
         procedure :: account, carried_pressure, pull, push
         procedure :: take_stock, energy_of
     end type slider
@@ -60,6 +63,7 @@ module slider_system
     !> How a block starts, if not at rest on a virgin contact with a slack spring.
     type :: initial_values
         logical :: any_given = .false.
+        logical :: mu_given = .false.          !! or else a law with an R has its virgin one
         real(dp) :: mu = 0.0_dp                !! friction coefficient [-]
         real(dp) :: r = 0.0_dp                 !! similarity ratio; the friction opposes +x [-]
         logical :: has_r = .true.              !! the law has an R; otherwise it is 0 or 1 here
@@ -130,17 +134,31 @@ contains
         type(slider), intent(in) :: system
         type(initial_values), intent(in) :: values
         type(slider_state), intent(inout) :: state   !! as `initial_state` left it
+        real(dp), dimension(size(state%x)) :: mu, held, alpha_t
+        type(facts) :: law
+        integer :: i
 
         if (.not. values%any_given) return
         state%x = values%displacement
         state%v = values%velocity
-        state%statev(:, statev_mu) = values%mu
+        mu = values%mu
+        held = cohesion(system%props)
+        alpha_t = system%props(prop_alpha_t)
+        if (allocated(system%constants)) then
+            do i = 1, size(mu)
+                law = friction_facts(system%props_of(i))
+                if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
+                held(i) = law%cohesion
+                alpha_t(i) = law%alpha_t
+            end do
+        end if
+        state%statev(:, statev_mu) = mu
         if (values%has_r) state%statev(:, statev_r) = values%r
-        state%friction = values%mu * state%normal
+        state%friction = mu * state%normal
         if (allocated(system%load)) state%friction = state%friction * system%load
-        if (values%has_r) state%friction = values%r * (state%friction + cohesion(system%props))
+        if (values%has_r) state%friction = values%r * (state%friction + held)
         state%friction = system%area * state%friction
-        state%statev(:, statev_u_et) = state%friction / (system%area * system%props(prop_alpha_t))
+        state%statev(:, statev_u_et) = state%friction / (system%area * alpha_t)
         state%spring = sum(state%friction) / size(state%friction) &
             + system%damping * values%velocity
         if (values%spring_given) state%spring = values%spring_force
@@ -158,6 +176,19 @@ contains
         state%spring = state%spring - system%stiffness * by
         call set_accelerations(system, state)
     end subroutine displace
+
+    !> Constants of the friction of a block.
+    pure function props_of(self, i) result(props)
+        class(slider), intent(in) :: self
+        integer, intent(in) :: i   !! block
+        real(dp), allocatable :: props(:)
+
+        if (allocated(self%constants)) then
+            props = self%constants(i, :)
+        else
+            props = self%props
+        end if
+    end function props_of
 
     !> Does the block move across the interface by itself?
     pure function free(self) result(yes)
@@ -311,10 +342,8 @@ contains
         real(dp), intent(inout) :: stiffness(:)  !! S df_t/dx [F/L]
         integer, intent(out) :: status           !! the worst: an error, snap-back, or ok
         integer, parameter :: few = 16   !! blocks for which the batch routine takes longer
-        real(dp) :: u_n   ! then, under a load of 1 [L]
         integer :: first, last, part_status
 
-        u_n = -normal / system%props(prop_alpha_n)
         status = friction_ok
         if (size(dx) < few) then
             do first = 1, size(dx)
@@ -325,8 +354,8 @@ contains
         else
             do first = 1, size(dx), part
                 last = min(first + part - 1, size(dx))
-                call forces_on_part(system, old, u_n, dx, dt, first, last, new, force, stiffness, &
-                    part_status)
+                call forces_on_part(system, old, normal, dx, dt, first, last, new, force, &
+                    stiffness, part_status)
                 if (part_status /= friction_ok) status = part_status
                 if (status < 0) return
             end do
@@ -339,11 +368,20 @@ contains
             integer, intent(out) :: point_status
             real(dp) :: du(2), statev(statev_size), traction(2), tangent(2, 2)
 
-            du = [u_n, dx(i)]
-            if (allocated(system%load)) du(1) = u_n * system%load(i)
+            if (allocated(system%constants)) then
+                du = [-normal / system%constants(i, prop_alpha_n), dx(i)]
+            else
+                du = [-normal / system%props(prop_alpha_n), dx(i)]
+            end if
+            if (allocated(system%load)) du(1) = du(1) * system%load(i)
             du(1) = du(1) - old(i, statev_u_n)
             statev = old(i, :)
-            call friction_update(du, dt, system%props, statev, traction, tangent, point_status)
+            if (allocated(system%constants)) then
+                call friction_update(du, dt, system%constants(i, :), statev, traction, tangent, &
+                    point_status)
+            else
+                call friction_update(du, dt, system%props, statev, traction, tangent, point_status)
+            end if
             if (point_status < 0) return
             new(i, :) = statev
             force(i) = system%area * traction(2)
@@ -355,9 +393,10 @@ contains
     !> The same for blocks `first` to `last`, a part that stays in cache: what the friction routine
     !> needs and leaves beside the forces never gets to memory. In three dimensions and from a cache
     !> line on, because the batch routine then works where the numbers are, otherwise on copies.
-    subroutine forces_on_part(system, old, u_n, dx, dt, first, last, new, force, stiffness, status)
+    subroutine forces_on_part(system, old, normal, dx, dt, first, last, new, force, stiffness, &
+        status)
         type(slider), intent(in) :: system
-        real(dp), intent(in) :: old(:, :), u_n, dx(:), dt
+        real(dp), intent(in) :: old(:, :), normal, dx(:), dt
         integer, intent(in) :: first, last
         real(dp), intent(inout) :: new(:, :), force(:), stiffness(:)
         integer, intent(out) :: status
@@ -371,15 +410,24 @@ contains
         n = last - first + 1
         skipped = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
         tangent(1:n, 1:3, 1:3) => room(skipped + 1:skipped + 9 * n)
-        du(:, 1) = u_n
-        if (allocated(system%load)) du(:, 1) = u_n * system%load(first:last)
+        if (allocated(system%constants)) then
+            du(:, 1) = -normal / system%constants(first:last, prop_alpha_n)
+        else
+            du(:, 1) = -normal / system%props(prop_alpha_n)
+        end if
+        if (allocated(system%load)) du(:, 1) = du(:, 1) * system%load(first:last)
         du(:, 1) = du(:, 1) - old(first:last, statev_u_n)
         du(:, 2) = dx(first:last)
         du(:, 3) = 0.0_dp
         do k = 1, statev_size
             statev(:, k) = old(first:last, k)
         end do
-        call friction_update_batch(du, dt, system%props, statev, traction, tangent, statuses)
+        if (allocated(system%constants)) then
+            call friction_update_batch(du, dt, system%constants(first:last, :), statev, traction, &
+                tangent, statuses)
+        else
+            call friction_update_batch(du, dt, system%props, statev, traction, tangent, statuses)
+        end if
         status = minval(statuses)
         if (status < 0) return
         status = maxval(statuses)
@@ -504,6 +552,8 @@ contains
             contact = contact + state%statev(i, statev_u_et)**2
             dissipated = dissipated + state%statev(i, statev_dissipation)
         end do
+        if (allocated(self%constants)) contact = sum(self%constants(:, prop_alpha_t) &
+            / self%props(prop_alpha_t) * state%statev(:, statev_u_et)**2)
         energy%kinetic = 0.5_dp * self%mass * motion
         energy%spring = 0.5_dp * springs / self%stiffness + self%coupling_energy(state%x)
         energy%contact = 0.5_dp * self%area * self%props(prop_alpha_t) * contact

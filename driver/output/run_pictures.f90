@@ -1,15 +1,17 @@
 !> The pictures of a run, of a chain's events and fields, and of a contact point's path.
 module run_pictures
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use block_table, only : block_columns, column_label
     use field_file, only : sample_fields
     use law_facts, only : internal_variable
+    use number_text, only : whole_text
     use picture, only : picture_values
     use point_settings, only : point_run
     use run_settings, only : settings
     implicit none
     private
 
-    public :: draw_catalogue, draw_fields, draw_point, draw_run
+    public :: draw_blocks, draw_catalogue, draw_fields, draw_point, draw_run
 
 contains
 
@@ -46,6 +48,26 @@ contains
         call values%begin(stem // '_events', stem // '_events.csv', run%units)
         call values%draw('catalogue', directory, stem // '_events', problem)
     end subroutine draw_catalogue
+
+    !> DIRECTORY/STEM_blocks.png, from the table of what differs from block to block.
+    subroutine draw_blocks(run, directory, stem, problem)
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: directory, stem
+        character(len=:), allocatable, intent(out) :: problem
+        integer, parameter :: most_points = 20000
+        type(picture_values) :: values
+        integer, allocatable :: columns(:)
+        integer :: k
+
+        allocate (columns, source=block_columns(run))
+        call values%begin(stem // '_blocks', stem // '_blocks.csv', run%units)
+        call values%set('panels', size(columns))
+        call values%set('step', (run%chain%n_blocks - 1) / most_points + 1)
+        do k = 1, size(columns)
+            call values%set('label_' // whole_text(k), column_label(run, columns(k)))
+        end do
+        call values%draw('blocks', directory, stem // '_blocks', problem)
+    end subroutine draw_blocks
 
     !> DIRECTORY/STEM_fields.png, from the fields of a chain.
     subroutine draw_fields(run, directory, stem, problem)

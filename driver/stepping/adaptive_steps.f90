@@ -29,7 +29,7 @@ module adaptive_steps
 
     type, extends(integrator) :: adaptive
         class(newmark), allocatable :: method
-        type(law_facts) :: law
+        type(law_facts), allocatable :: laws(:)   !! of each block; one, if all are alike
         real(dp) :: dt = 0.0_dp        !! next to try [T]
         real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
         real(dp) :: every = 0.0_dp     !! steps end at multiples of this time, unless it is 0 [T]
@@ -55,6 +55,8 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start
+        type(law_facts) :: law
+        integer :: i
 
         call self%take_run(run, system, start)
         call choose_method(run, self%method)
@@ -64,9 +66,12 @@ contains
         self%every = run%every
         self%order = run%order
         self%pressing = run%area * run%drive%largest_normal()
-        self%law = friction_facts(run%props)
-        self%tolerated = run%rtol * max(self%law%typical_coefficient * self%pressing + run%area &
-            * self%law%cohesion, tiny(1.0_dp) / epsilon(1.0_dp))
+        law = friction_facts(run%props)
+        self%laws = [law]
+        if (allocated(system%constants)) self%laws = [(friction_facts(system%constants(i, :)), &
+            i = 1, size(system%constants, 1))]
+        self%tolerated = run%rtol * max(law%typical_coefficient * self%pressing + run%area &
+            * law%cohesion, tiny(1.0_dp) / epsilon(1.0_dp))
         self%part = 1.0_dp / (2.0_dp**self%order - 1.0_dp)
         self%middle = start
         self%error = start
@@ -212,16 +217,19 @@ contains
     function error_of(self) result(error)
         class(adaptive), intent(inout) :: self
         real(dp) :: error
+        integer :: i
 
         call blend(self%ends, [-self%part, self%part], self%error)
         associate (e => self%error, s => self%system)
             error = maxval(max(s%stiffness * abs(e%x), &
                 s%stiffness * sqrt(s%mass / self%stiffness) * abs(e%v), &
                 s%stiffness * abs(e%statev(:, statev_slip))))
-            error = max(error, self%pressing * maxval(friction_coefficient_change( &
-                self%law%traits, self%ends(2)%statev(:, statev_r), e%statev(:, statev_mu), &
-                e%statev(:, statev_r))))
-            if (s%across%free()) error = max(error, self%law%typical_coefficient * s%area &
+            do i = 1, size(e%x)
+                error = max(error, self%pressing * friction_coefficient_change( &
+                    self%laws(min(i, size(self%laws)))%traits, self%ends(2)%statev(i, statev_r), &
+                    e%statev(i, statev_mu), e%statev(i, statev_r)))
+            end do
+            if (s%across%free()) error = max(error, self%laws(1)%typical_coefficient * s%area &
                 * s%props(prop_alpha_n) * max(abs(e%statev(1, statev_u_n)), abs(e%v_n) &
                 * sqrt(s%across%mass / (s%across%stiffness + s%area * s%props(prop_alpha_n)))))
         end associate
@@ -236,6 +244,7 @@ contains
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
         real(dp), parameter :: finest(2) = [0.0_dp, 1.0_dp]
+        integer :: i
 
         associate (finest_end => self%ends(2))
             new%time = finest_end%time
@@ -249,15 +258,18 @@ contains
                 call blend(self%ends, [-self%part, 1.0_dp + self%part], new)
             end if
             new%statev(:, statev_status) = finest_end%statev(:, statev_status)
-            associate (mu => new%statev(:, statev_mu), r => new%statev(:, statev_r))
-                if (self%law%traits%memory == 1) then
-                    mu = min(self%law%largest_coefficient, max(self%law%kinetic_coefficient, mu))
-                    r = min(1.0_dp, max(0.0_dp, r))
-                else
-                    mu = max(0.0_dp, mu)
-                    r = max(0.5_dp * finest_end%statev(:, statev_r), r)
-                end if
-            end associate
+            do i = 1, size(new%x)
+                associate (mu => new%statev(i, statev_mu), r => new%statev(i, statev_r), &
+                    law => self%laws(min(i, size(self%laws))))
+                    if (law%traits%memory == 1) then
+                        mu = min(law%largest_coefficient, max(law%kinetic_coefficient, mu))
+                        r = min(1.0_dp, max(0.0_dp, r))
+                    else
+                        mu = max(0.0_dp, mu)
+                        r = max(0.5_dp * finest_end%statev(i, statev_r), r)
+                    end if
+                end associate
+            end do
         end associate
         ! what accumulates never falls, not even by round-off
         new%statev(:, statev_slip) = max(old%statev(:, statev_slip), new%statev(:, statev_slip))

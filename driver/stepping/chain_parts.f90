@@ -196,6 +196,8 @@ contains
                 w%system = slider(system%mass, system%stiffness, system%damping, system%area, &
                     system%props, system%coupling)
                 if (allocated(system%load)) allocate (w%system%load(width))
+                if (allocated(system%constants)) allocate (w%system%constants(width, &
+                    size(system%constants, 2)))
                 allocate (w%guess(width))
                 call make_room(w%old)
                 call make_room(w%new)
@@ -329,6 +331,11 @@ contains
             call fetch(old%statev(:, k), start, w%old%statev(:, k))
         end do
         if (allocated(system%load)) call fetch(system%load, start, w%system%load)
+        if (allocated(system%constants)) then
+            do k = 1, size(system%constants, 2)
+                call fetch(system%constants(:, k), start, w%system%constants(:, k))
+            end do
+        end if
         if (present(guess)) then
             call fetch(guess, start, w%guess)
         else

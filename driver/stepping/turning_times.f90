@@ -28,8 +28,8 @@ contains
             resting = 0.0_dp
             resting(statev_mu) = mu
             if (mu * pressure > 0.0_dp) velocity = state%statev(i, statev_u_et) &
-                * (friction_healing_rate(system%props, resting) + mu * loading) / (mu &
-                + cohesion(system%props) / pressure)
+                * (friction_healing_rate(system%props_of(i), resting) + mu * loading) / (mu &
+                + cohesion(system%props_of(i)) / pressure)
         end associate
     end function sticking_velocity
 

@@ -1,6 +1,7 @@
 !> The verb run: simulates what an input file describes, and reports.
 module study
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use block_table, only : block_columns, write_blocks
     use checkpoint, only : checkpoint_writer, read_checkpoint
     use command_line, only : command
     use namelist_input, only : namelist_file
@@ -10,7 +11,7 @@ module study
     use recorder, only : csv_recorder
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
-    use run_pictures, only : draw_catalogue, draw_fields, draw_run
+    use run_pictures, only : draw_blocks, draw_catalogue, draw_fields, draw_run
     use run_reader, only : read_settings
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
@@ -48,6 +49,7 @@ contains
         type(csv_recorder), target :: records
         type(outcome) :: result
         character(len=:), allocatable :: problem, base
+        logical :: written
 
         call read_input(wanted%input, run, exit_status)
         if (exit_status /= exit_done) return
@@ -71,7 +73,8 @@ contains
         else
             call records%open()
         end if
-        if (records%failed()) then
+        call write_blocks(base, run, written)
+        if (records%failed() .or. .not. written) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv'
             return
         end if
@@ -131,6 +134,8 @@ contains
             wanted%output, wanted%stem, problem)
         if (len(problem) == 0 .and. run%fields > 0) call draw_fields(run, wanted%output, &
             wanted%stem, problem)
+        if (len(problem) == 0 .and. size(block_columns(run)) > 0) call draw_blocks(run, &
+            wanted%output, wanted%stem, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
     end subroutine draw_pictures
 

@@ -370,7 +370,7 @@ class Resumed(LongRun):
             process = self.start('--output', 'parts', *resume)
             self.assertEqual((process.communicate(timeout=120)[1], process.returncode), ('', 0))
         names = sorted(path.name for path in (self.folder / 'whole').iterdir())
-        self.assertEqual(len(names), 4)   # series, events, fields and their description
+        self.assertEqual(len(names), 5)   # series, events, fields and their description, what each block has
         for name in names:
             self.assertEqual((self.folder / 'parts' / name).read_bytes(),
                              (self.folder / 'whole' / name).read_bytes())
