@@ -41,7 +41,7 @@ contains
         call read_scatters(file, run%chain%n_blocks, table, scatter)
         run%chain%differing = pack([(place, place = 1, table%n)], scatter > 0.0_dp &
             .or. [(profile_of(profiles, 'friction', table%of(place)%name) > 0, place = 1, table%n)])
-        call read_friction(file, run%props, means=size(run%chain%differing) > 0)
+        call read_friction(file, run%props, law, means=size(run%chain%differing) > 0)
         if (size(run%chain%differing) == 0 .or. size(file%faults) > faults_before) return
         call fill_constants(file, profiles, table, scatter, run)
         call check_constants(file, table, scatter, run%chain)

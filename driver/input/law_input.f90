@@ -16,16 +16,21 @@ module law_input
 contains
 
     !> Constants of the friction law in the order of `props`; every fault is left in `file%faults`.
-    subroutine read_friction(file, props, means)
+    subroutine read_friction(file, props, law, means)
         type(namelist_file), intent(inout) :: file
         real(dp), allocatable, intent(out) :: props(:)
+        integer, intent(in), optional :: law     !! of `read_law`, if the caller has read it
         logical, intent(in), optional :: means   !! true: of constants that the caller checks
                                                  !! against each other, place by place
         type(constant_table) :: table
         integer :: faults_before, number, place
 
         faults_before = size(file%faults)
-        call read_law(file, number)
+        if (present(law)) then
+            number = law
+        else
+            call read_law(file, number)
+        end if
         table = friction_constants(number)
         allocate (props(table%n))
         props = 0.0_dp

@@ -271,10 +271,10 @@ class BadInput(Point):
     def test_input_of_one_mode_given_to_the_other(self):
         result = self.run_program('point', INPUTS / 'stick_slip.nml')
         self.assertEqual(result.returncode, 2)
-        self.assertIn('group &point is missing', result.stderr)
+        self.assertIn('which needs a group &point', result.stderr)
         result = self.run_text(namelist(), verb='run')
         self.assertEqual(result.returncode, 2)
-        self.assertIn('&point: unknown group', result.stderr)
+        self.assertIn('an input of the verb point, not of run', result.stderr)
         self.assertIn('stickslip point case.nml', result.stderr)
         self.assertEqual(len(result.stderr.splitlines()), 1)
 

@@ -323,7 +323,7 @@ class NoSteadySliding(Stability):
         self.assertIn('&slider stiffness = -1', result.stderr)
         self.assertEqual(result.stdout, '')
         result = self.run_text('&point /', verb='stability')
-        self.assertEqual((result.returncode, result.stderr.count('point: unknown group')), (2, 1))
+        self.assertEqual((result.returncode, result.stderr.count('an input of the verb point, not of stability')), (2, 1))
 
     def test_the_sense_of_the_drive_does_not_matter(self):
         there = self.told(namelist())[0]

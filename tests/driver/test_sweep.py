@@ -179,7 +179,7 @@ class BadInput(Sweep):
         self.refused(sweep('drive%velocity', '1', {('sweep', 'values2'): '1'}), '&sweep key2: is missing')
         result = self.run_text(namelist(), verb='sweep')
         self.assertEqual(result.returncode, 2)
-        self.assertIn('group &sweep is missing', result.stderr)
+        self.assertIn('which needs a group &sweep', result.stderr)
 
     def test_keys_that_no_run_knows(self):
         self.refused(sweep('slider%masss', '1'), '&slider masss: unknown key')
@@ -229,7 +229,7 @@ class BadInput(Sweep):
     def test_a_run_does_not_take_a_sweep(self):
         result = self.run_text(sweep('drive%velocity', '1'))
         self.assertEqual(result.returncode, 2)
-        self.assertIn('&sweep: unknown group', result.stderr)
+        self.assertIn('an input of the verb sweep, not of run', result.stderr)
         self.assertIn('stickslip sweep case.nml', result.stderr)
 
     def test_bad_usage(self):
