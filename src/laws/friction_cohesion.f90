@@ -165,7 +165,7 @@ contains
         else if (load%pressure > 0.0_wp) then
             call inner%slip_rate(state, without(load, cohesion), rate, jumps)
         else
-            rate = load%loading / load%stiffness
+            rate = (load%loading - state%mu * load%pressure_rate) / load%stiffness
             if (.not. load%sliding) rate = max(0.0_wp, rate)
         end if
     end subroutine cohesive_slip_rate
