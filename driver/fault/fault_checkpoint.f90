@@ -12,7 +12,7 @@ module fault_checkpoint
 
     public :: read_checkpoint, write_checkpoint
 
-    integer(int64), parameter :: version = int(z'6661756C74000002', int64)   !! "fault", and 2
+    integer(int64), parameter :: version = int(z'6661756C74000003', int64)   !! "fault", and 3
     integer, parameter :: word = 8          !! bytes
     integer, parameter :: fixed_words = 5   !! version, fingerprint, nx, nz, numbers of the header
 

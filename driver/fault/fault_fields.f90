@@ -1,172 +1,156 @@
-!> Fields of the fault over time: BASE_fields.bin holds nothing but numbers of 64 bits, a record for
-!> each time,
-!>
-!>     time, slip rate of each cell, slip, traction, internal variable,
-!>
-!> cells along strike first, and BASE_fields.xdmf describes it to ParaView. Each process writes its
-!> own rows. Records are only ever added: what a killed run has written stays readable, and a
-!> resumed one goes on behind it, on any number of processes.
+!> Fields of the fault over time, in the files of field_file: slip rate, slip, traction and internal
+!> variable of all cells. Each process writes its own rows.
 module fault_fields
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_problem, only : fault, fault_state
-    use platform, only : truncate_file
+    use field_file, only : field_parts, whole_words
+    use platform, only : rename_file
     use processes, only : team
     use text_file, only : output_file
     implicit none
     private
 
-    public :: field_file
+    public :: fault_field_file
 
-    integer, parameter :: fields = 4, word = 8
-    character(len=9), parameter :: names(fields) = ['slip_rate', 'slip     ', 'traction ', &
-        'internal ']
+    integer, parameter :: slip_rate = 1, slip = 2, traction = 3, internal = 4
+    character(len=9), parameter :: names(4) = ['slip_rate', 'slip     ', 'traction ', 'internal ']
 
-    type :: field_file
-        character(len=:), allocatable :: base   !! of the files' names, with the directory
-        integer :: records = 0
-        logical :: failed = .false.             !! on some process
+    type :: fault_field_file
+        type(field_parts) :: parts
     contains
-        procedure :: create, go_on, write_record, describe
-    end type field_file
+        procedure :: create, go_on, write_record, save
+        procedure, private :: prepare, describe
+    end type fault_field_file
 
 contains
 
-    pure function record_bytes(here) result(bytes)
+    subroutine prepare(self, here, base)
+        class(fault_field_file), intent(inout) :: self
         type(fault), intent(in) :: here
-        integer(int64) :: bytes
+        character(len=*), intent(in) :: base
+        integer :: i
 
-        bytes = word * (1 + fields * int(here%plan%nx, int64) * here%plan%nz)
-    end function record_bytes
+        associate (plan => here%plan)
+            call self%parts%prepare(base, names, ['z', 'x'], plan%z_of([(i, i = 1, plan%nz)]), &
+                plan%x_of([(i, i = 1, plan%nx)]))
+        end associate
+        call self%parts%take_rows(here%part%first, here%part%rows)
+    end subroutine prepare
 
-    subroutine create(self, together, base)
-        class(field_file), intent(inout) :: self
+    subroutine create(self, here, together, base)
+        class(fault_field_file), intent(inout) :: self
+        type(fault), intent(in) :: here
         type(team), intent(in) :: together
         character(len=*), intent(in) :: base
-        integer :: unit, status
 
-        self%base = base
-        status = 0
-        if (together%rank == 0) then
-            open (newunit=unit, file=base // '_fields.bin', access='stream', form='unformatted', &
-                status='replace', action='write', iostat=status)
-            if (status == 0) close (unit)
-        end if
-        self%failed = together%any_of(status /= 0)
+        call self%prepare(here, base)
+        if (together%rank == 0) call self%parts%remove_old()
     end subroutine create
 
     !> Goes on behind the records that a checkpoint knows of.
     subroutine go_on(self, here, together, base, records)
-        class(field_file), intent(inout) :: self
+        class(fault_field_file), intent(inout) :: self
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         character(len=*), intent(in) :: base
-        integer, intent(in) :: records
-        logical :: cut
+        integer(int64), intent(in) :: records
 
-        self%base = base
-        self%records = records
-        cut = .true.
-        if (together%rank == 0) cut = truncate_file(base // '_fields.bin', records &
-            * record_bytes(here))
-        self%failed = together%any_of(.not. cut)
+        call self%prepare(here, base)
+        if (together%rank == 0) call self%parts%find(records)
+        if (agree(self, together)) return
+        call self%parts%read_own(records)
+        if (agree(self, together)) return
     end subroutine go_on
 
     subroutine write_record(self, here, together, state)
-        class(field_file), intent(inout) :: self
+        class(fault_field_file), intent(inout) :: self
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         type(fault_state), intent(in) :: state
-        integer(int64) :: place, row, bytes
-        integer :: unit, status, k
 
-        if (self%failed) return
-        open (newunit=unit, file=self%base // '_fields.bin', access='stream', form='unformatted', &
-            status='old', action='readwrite', iostat=status)
-        place = 1 + self%records * record_bytes(here)
-        if (together%rank == 0 .and. status == 0) write (unit, pos=place, iostat=status) state%time
-        row = word * int(here%plan%nx, int64)
-        place = place + word + row * (here%part%first - 1)
-        do k = 1, fields
-            if (status /= 0 .or. here%n == 0) exit
-            select case (k)
-            case (1)
-                write (unit, pos=place, iostat=status) state%rate
-            case (2)
-                write (unit, pos=place, iostat=status) state%slip
-            case (3)
-                write (unit, pos=place, iostat=status) state%traction
-            case default
-                write (unit, pos=place, iostat=status) state%memory
-            end select
-            place = place + row * here%plan%nz
-        end do
-        close (unit)
-        self%records = self%records + 1
-        call together%wait()
-        inquire (file=self%base // '_fields.bin', size=bytes)
-        self%failed = together%any_of(status /= 0 .or. bytes /= self%records * record_bytes(here))
-        if (.not. self%failed) return
-        self%records = self%records - 1   ! nothing is left of a record that is not whole
-        if (together%rank == 0) status = merge(0, 1, truncate_file(self%base // '_fields.bin', &
-            self%records * record_bytes(here)))
+        if (self%parts%failed) return
+        call self%parts%next(state%time)
+        call self%parts%put(slip_rate, state%rate)
+        call self%parts%put(slip, state%slip)
+        call self%parts%put(traction, state%traction)
+        call self%parts%put(internal, state%memory)
+        if (self%parts%is_full()) call self%save(here, together)
     end subroutine write_record
 
-    !> The description for ParaView, of all records so far.
-    subroutine describe(self, here, together)
-        class(field_file), intent(in) :: self
+    !> Brings all records into the files, and describes them.
+    subroutine save(self, here, together)
+        class(fault_field_file), intent(inout) :: self
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
-        real(dp) :: time
-        type(output_file) :: file
-        character(len=200) :: mesh, spacing, cells
-        integer(int64) :: place
-        character(len=24) :: number, time_text
-        integer :: i, k, unit, status
 
-        if (together%rank /= 0) return
-        open (newunit=unit, file=self%base // '_fields.bin', access='stream', form='unformatted', &
-            status='old', action='read', iostat=status)
-        if (status /= 0) return
-        associate (plan => here%plan)
-            write (mesh, '(i0, 1x, i0)') plan%nz + 1, plan%nx + 1
-            write (cells, '(i0, 1x, i0)') plan%nz, plan%nx
-            write (spacing, '(es22.15, 1x, es22.15)') plan%dz(), plan%dx()
-        end associate
-        call file%create(self%base // '_fields.xdmf')
+        if (self%parts%is_saved() .or. self%parts%failed) return
+        if (together%rank == 0) call self%parts%lay_out()
+        if (.not. agree(self, together)) then
+            call self%parts%write_own()
+            if (.not. agree(self, together)) then
+                if (together%rank == 0) call self%parts%publish()
+                if (agree(self, together)) return
+                self%parts%saved = self%parts%records
+                if (together%rank == 0) call self%describe(here)
+                if (agree(self, together)) return
+                return
+            end if
+        end if
+        if (together%rank == 0) call self%parts%withdraw()
+    end subroutine save
+
+    !> What one process has found is so for all; the first one's places are.
+    function agree(self, together) result(failed)
+        class(fault_field_file), intent(inout) :: self
+        type(team), intent(in) :: together
+        logical :: failed
+        real(dp) :: places(size(self%parts%places))
+
+        places = real(self%parts%places, dp)   ! exact below 9e15
+        call together%share(places)
+        self%parts%places = int(places, int64)
+        failed = together%any_of(self%parts%failed)
+        self%parts%failed = failed
+    end function agree
+
+    !> BASE_fields.xdmf, for ParaView: a grid for each time.
+    subroutine describe(self, here)
+        class(fault_field_file), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(output_file) :: file
+        character(len=:), allocatable :: name
+        character(len=48) :: spacing, origin
+        character(len=24) :: time
+        integer(int64) :: i, cells(2)
+        integer :: k
+
+        cells = [here%plan%nz, here%plan%nx]
+        write (spacing, '(es22.15, 1x, es22.15)') here%plan%dz(), here%plan%dx()
+        write (origin, '(es22.15, 1x, es22.15)') 0.0_dp, here%plan%x_of(1) - 0.5_dp &
+            * here%plan%dx()
+        name = self%parts%base // '_fields.xdmf'
+        call file%create(name // '.new')
         call file%write_line('<?xml version="1.0"?><Xdmf Version="2.0"><Domain>')
         call file%write_line('<Grid GridType="Collection" CollectionType="Temporal">')
-        do i = 1, self%records
-            read (unit, pos=1 + (i - 1) * record_bytes(here), iostat=status) time
-            if (status /= 0) exit
-            write (time_text, '(es24.16e3)') time
-            call file%write_line('<Grid><Time Value="' // trim(adjustl(time_text)) // '"/>')
+        do i = 1, self%parts%saved
+            write (time, '(es24.16e3)') self%parts%times(i)
+            call file%write_line('<Grid><Time Value="' // trim(adjustl(time)) // '"/>')
             call file%write_line('<Topology TopologyType="2DCoRectMesh" Dimensions="' &
-                // trim(mesh) // '"/>')
+                // whole_words(cells + 1) // '"/>')
             call file%write_line('<Geometry GeometryType="ORIGIN_DXDY"><DataItem Dimensions="2" ' &
-                // 'Format="XML">0 0</DataItem>')
+                // 'Format="XML">' // trim(origin) // '</DataItem>')
             call file%write_line('<DataItem Dimensions="2" Format="XML">' // trim(spacing) &
                 // '</DataItem></Geometry>')
-            do k = 1, fields
-                place = (i - 1) * record_bytes(here) + word * (1 + (k - 1) &
-                    * int(here%plan%nx, int64) * here%plan%nz)
-                write (number, '(i0)') place
+            do k = 1, size(names)
                 call file%write_line('<Attribute Name="' // trim(names(k)) // '" Center="Cell">' &
-                    // '<DataItem Dimensions="' // trim(cells) // '" NumberType="Float" ' &
-                    // 'Precision="8" Format="Binary" Endian="Little" Seek="' // trim(number) &
-                    // '">' // file_name(self%base) // '_fields.bin</DataItem></Attribute>')
+                    // self%parts%data_item(k, i, 1_int64) // '</Attribute>')
             end do
             call file%write_line('</Grid>')
         end do
-        close (unit)
         call file%write_line('</Grid></Domain></Xdmf>')
         call file%finish()
+        self%parts%failed = file%failed
+        if (.not. self%parts%failed) self%parts%failed = .not. rename_file(name // '.new', name)
     end subroutine describe
-
-    pure function file_name(path) result(name)
-        character(len=*), intent(in) :: path
-        character(len=:), allocatable :: name
-
-        name = path(index(path, '/', back=.true.) + 1:)
-    end function file_name
 
 end module fault_fields

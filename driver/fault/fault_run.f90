@@ -4,7 +4,7 @@ module fault_run
     use fault_checkpoint, only : read_checkpoint, write_checkpoint
     use fault_energy, only : energies
     use fault_events, only : event_watch
-    use fault_fields, only : field_file
+    use fault_fields, only : fault_field_file
     use fault_explicit, only : explicit_steps
     use fault_implicit, only : implicit_steps
     use fault_problem, only : fault, fault_state
@@ -29,7 +29,7 @@ module fault_run
         class(stepper), allocatable :: steps
         type(event_watch) :: watch
         type(recorder) :: records
-        type(field_file) :: fields
+        type(fault_field_file) :: fields
         character(len=:), allocatable :: base    !! of the files' names, with the directory
     end type live_run
 
@@ -72,7 +72,7 @@ contains
             live%watch%largest_rate = together%largest(maxval(live%state%rate))
             call live%records%begin(live%here, together, live%state, live%watch)
             if (plan%fields > 0) then
-                call live%fields%create(together, base)
+                call live%fields%create(live%here, together, base)
                 call live%fields%write_record(live%here, together, live%state)
             end if
         end if
@@ -81,9 +81,9 @@ contains
         if (together%any_of(live%records%failed()) .and. len(problem) == 0) then
             problem = 'cannot write to ' // base // '_*.csv (disk full?)'
         end if
-        if (live%fields%failed .and. len(problem) == 0) problem = 'cannot write to ' // base &
-            // '_fields.bin (disk full?)'
-        if (plan%fields > 0) call live%fields%describe(live%here, together)
+        if (plan%fields > 0) call live%fields%save(live%here, together)
+        if (live%fields%parts%failed .and. len(problem) == 0) problem = 'cannot write to ' // base &
+            // '_fields* (disk full?)'
         most_slip = together%largest(maxval(live%state%slip))
         live%state%energy%elastic = live%here%elastic_energy(together, live%state)
         if (together%rank == 0 .and. len(problem) == 0) then
@@ -160,13 +160,18 @@ contains
         logical :: done
 
         call live%records%flush_all()
+        if (live%here%plan%fields > 0) call live%fields%save(live%here, together)
+        if (live%fields%parts%failed) then
+            problem = 'cannot write to ' // live%base // '_fields* (disk full?)'
+            return
+        end if
         if (together%any_of(live%records%failed())) then
             problem = 'cannot write to ' // live%base // '_*.csv (disk full?)'
             return
         end if
         associate (state => live%state, watch => live%watch, event => live%watch%event)
             header = 0.0_dp
-            header(14) = live%fields%records
+            header(14) = real(live%fields%parts%records, dp)
             header(15:17) = [state%energy%loading, state%energy%dissipated, state%energy%radiated]
             header(:13) = [state%time, state%dt, real(state%steps, dp), real(state%rejected, dp), &
                 merge(1.0_dp, 0.0_dp, watch%on), real(watch%events, dp), watch%largest_rate, &
@@ -217,9 +222,9 @@ contains
             watch%took_part = columns(:, n + 2)
         end associate
         if (live%here%plan%fields > 0) call live%fields%go_on(live%here, together, live%base, &
-            int(header(14)))
+            int(header(14), int64))
         call live%records%go_on(header(own_numbers + 1:))
-        failed = together%any_of(live%records%failed()) .or. live%fields%failed
+        failed = together%any_of(live%records%failed()) .or. live%fields%parts%failed
         if (failed) problem = 'the files ' // live%base &
             // '_*.csv are not those that the checkpoint goes on with'
     end subroutine take_checkpoint

@@ -1,177 +1,429 @@
-!> Fields of a chain over time, in one format for all sizes: BASE_fields.bin holds nothing but
-!> numbers of 64 bits, a record for each time,
+!> Fields over time, of a chain or a fault, in one format: BASE_fields_000001.h5 and so on hold a
+!> number of records each, as data sets `time` and one for each field (record, row, column), and
+!> BASE_fields.h5 shows them as one (virtual data sets). Without HDF5 the parts are
+!> BASE_fields_000001.bin.
 !>
-!>     time, slip rate of each block, slip of each block, friction coefficient of each block,
-!>
-!> and BASE_fields.xdmf describes it to ParaView as a map over blocks and time. Records are only
-!> ever added: what a killed run has written stays readable, and a resumed one goes on behind it.
+!> A part is written whole, under another name, before it takes the place of the one before: a run
+!> that is killed leaves all that it had saved, and readable. The last part is written again as it
+!> grows. Any number of processes share the rows. What they have to do one after the other, all of
+!> them or the first alone, is told at each procedure; a chain has one process.
 module field_file
+    use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_null_char
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use friction_mod, only : statev_mu, statev_slip
-    use number_text, only : full_row
-    use slider_system, only : slider_state
-    use text_file, only : output_file
+    use field_layouts, only : field_layout, fields_are_hdf5, find_fields, get_numbers, &
+        join_fields, lay_out_fields, most_fields, name_length, put_numbers, word
+    use platform, only : remove_file, rename_file
     implicit none
     private
 
-    public :: chain_fields, field_record_bytes, sample_fields
+    public :: field_parts, field_record_bytes, whole_words
 
-    integer, parameter :: fields = 3
-    character(len=9), parameter :: names(fields) = ['slip_rate', 'slip     ', 'mu       ']
+    integer(int64), parameter :: part_bytes = 16777216_int64   !! of a part, about
 
-    type :: chain_fields
-        type(output_file) :: file
-        character(len=:), allocatable :: base   !! of the names, with the directory
-        integer :: n_blocks = 0
+    type :: field_parts
+        character(len=:), allocatable :: base   !! of the files' names, with the directory
+        integer(int64) :: records = 0           !! so far
+        integer(int64) :: saved = 0             !! of them, in files
+        logical :: failed = .false.             !! something could not be written or read
+        integer(c_int64_t) :: places(0:most_fields) = 0   !! of times and fields in a part [bytes]
+        real(dp), allocatable :: times(:)       !! of all records, as the first process knows them
+        type(field_layout), private :: layout
+        real(dp), allocatable, private :: axes(:)            !! places of rows, then of columns
+        integer(int64), private :: cells_before = 0          !! those of this process
+        integer(int64), private :: part_of_places = 0        !! that `places` are of
+        integer(int64), private :: per_part = 1              !! records
+        real(dp), allocatable, private :: values(:, :, :)    !! own cell, record of the part, field
     contains
-        procedure :: create, go_on, write_record, finish
-        procedure, private :: records, write_description
-    end type chain_fields
+        procedure :: prepare, take_rows, remove_old, next, put
+        procedure :: is_full, is_saved, lay_out, write_own, publish, withdraw
+        procedure :: count_saved, find, read_own, read_record, data_item, last_together
+        procedure, private :: part_name, parts, records_of, find_part
+    end type field_parts
 
 contains
 
-    pure function field_record_bytes(n_blocks) result(bytes)
-        integer, intent(in) :: n_blocks
+    pure function field_record_bytes(cells, fields) result(bytes)
+        integer(int64), intent(in) :: cells
+        integer, intent(in) :: fields
         integer(int64) :: bytes
 
-        bytes = 8 * (1 + fields * int(n_blocks, int64))
+        bytes = word * (1 + fields * cells)
     end function field_record_bytes
 
-    subroutine create(self, base, n_blocks)
-        class(chain_fields), intent(inout) :: self
+    !> For files BASE_fields*, of fields on cells at these places of rows and columns.
+    subroutine prepare(self, base, fields, axes, rows, columns)
+        class(field_parts), intent(out) :: self
         character(len=*), intent(in) :: base
-        integer, intent(in) :: n_blocks
-
-        self%base = base
-        self%n_blocks = n_blocks
-        call self%file%create(base // '_fields.bin')
-    end subroutine create
-
-    !> Goes on in the file of an interrupted run, behind its first bytes.
-    subroutine go_on(self, base, n_blocks, bytes)
-        class(chain_fields), intent(inout) :: self
-        character(len=*), intent(in) :: base
-        integer, intent(in) :: n_blocks
-        integer(int64), intent(in) :: bytes
-
-        self%base = base
-        self%n_blocks = n_blocks
-        call self%file%go_on(base // '_fields.bin', bytes)
-    end subroutine go_on
-
-    !> The blocks after the step from `old` to `new`; slip rates are those of the step.
-    subroutine write_record(self, old, new)
-        class(chain_fields), intent(inout) :: self
-        type(slider_state), intent(in) :: old, new
-        real(dp) :: dt
-
-        dt = max(new%time - old%time, tiny(dt))
-        call self%file%write_numbers([new%time])
-        call self%file%write_numbers((new%statev(:, statev_slip) - old%statev(:, statev_slip)) / dt)
-        call self%file%write_numbers(new%statev(:, statev_slip))
-        call self%file%write_numbers(new%statev(:, statev_mu))
-        call self%file%flush_lines()
-    end subroutine write_record
-
-    pure function records(self) result(n)
-        class(chain_fields), intent(in) :: self
-        integer(int64) :: n
-
-        n = self%file%bytes / field_record_bytes(self%n_blocks)
-    end function records
-
-    subroutine finish(self)
-        class(chain_fields), intent(inout) :: self
-
-        if (self%n_blocks == 0) return
-        call self%file%finish()
-        call self%write_description()
-        self%n_blocks = 0
-    end subroutine finish
-
-    !> BASE_fields.dat for a picture: slip rates in cells of blocks and times, in each the largest;
-    !> `time block slip_rate`, an empty line after each time.
-    subroutine sample_fields(base, n_blocks, done)
-        character(len=*), intent(in) :: base
-        integer, intent(in) :: n_blocks
-        logical, intent(out) :: done
-        integer, parameter :: most_cells = 300   !! in either direction
-        type(output_file) :: sample
-        real(dp) :: time, rate(n_blocks)
-        real(dp), allocatable :: largest(:)
-        integer(int64) :: records, bytes, i
-        integer :: unit, status, times, blocks, k
-
-        open (newunit=unit, file=base // '_fields.bin', access='stream', form='unformatted', &
-            status='old', action='read', iostat=status)
-        done = status == 0
-        if (.not. done) return
-        inquire (unit=unit, size=bytes)
-        records = bytes / field_record_bytes(n_blocks)
-        times = int((records - 1) / most_cells) + 1
-        blocks = (n_blocks - 1) / most_cells + 1
-        largest = spread(0.0_dp, 1, (n_blocks - 1) / blocks + 1)
-        call sample%create(base // '_fields.dat')
-        do i = 1, records
-            read (unit, pos=1 + (i - 1) * field_record_bytes(n_blocks), iostat=status) time, rate
-            if (status /= 0) exit
-            do k = 1, size(largest)
-                largest(k) = max(largest(k), maxval(rate(1 + (k - 1) * blocks:min(n_blocks, &
-                    k * blocks))))
-            end do
-            if (mod(i, int(times, int64)) > 0 .and. i < records) cycle
-            do k = 1, size(largest)
-                call sample%write_line(full_row([time, 1.0_dp + (k - 1) * blocks, largest(k)], ' '))
-            end do
-            call sample%write_line('')
-            largest = 0.0_dp
-        end do
-        close (unit)
-        call sample%finish()
-        done = status == 0 .and. .not. sample%failed
-    end subroutine sample_fields
-
-    !> Each number of a map is found in the records by its place: start, stride, count.
-    subroutine write_description(self)
-        class(chain_fields), intent(inout) :: self
-        character(len=*), parameter :: item = &
-            '<DataItem ItemType="HyperSlab" Dimensions="', &
-            places = '"><DataItem Dimensions="3 2" Format="XML">'
-        type(output_file) :: description
-        character(len=80) :: map
-        character(len=400) :: data
-        character(len=20) :: number
+        character(len=*), intent(in) :: fields(:)    !! names, up to 15 letters
+        character(len=*), intent(in) :: axes(2)      !! names of rows and columns
+        real(dp), intent(in) :: rows(:)              !! places
+        real(dp), intent(in) :: columns(:)           !! one column is none
         integer :: i
 
-        write (map, '(i0, 1x, i0)') self%records(), self%n_blocks
-        write (data, '(a, i0, 1x, i0, 3a)') '<DataItem Format="Binary" NumberType="Float" ' &
-            // 'Precision="8" Endian="Little" Dimensions="', self%records(), &
-            1 + fields * self%n_blocks, '">', &
-            self%base(index(self%base, '/', back=.true.) + 1:), '_fields.bin</DataItem></DataItem>'
-        call description%create(self%base // '_fields.xdmf')
-        call description%write_line('<?xml version="1.0"?>')
-        call description%write_line('<Xdmf Version="2.0"><Domain><Grid Name="chain">')
-        call description%write_line('<Topology TopologyType="2DRectMesh" Dimensions="' &
-            // trim(map) // '"/>')
-        write (number, '(i0)') self%n_blocks
-        call description%write_line('<Geometry GeometryType="VXVY"><DataItem Format="XML" ' &
-            // 'Dimensions="' // trim(number) // '">')
-        do i = 1, self%n_blocks
-            write (number, '(i0)') i
-            call description%write_line(trim(number))
+        self%base = base
+        self%layout%rows = size(rows)
+        self%layout%columns = size(columns)
+        self%layout%fields = size(fields)
+        do i = 1, size(fields)
+            self%layout%names(:, i) = letters(fields(i))
         end do
-        write (number, '(i0)') self%records()
-        call description%write_line('</DataItem>' // item // trim(number) // places &
-            // '0 0 1 1 ' // trim(number) // ' 1</DataItem>' // trim(data) // '</Geometry>')
-        do i = 1, fields
-            write (number, '(i0)') 1 + (i - 1) * self%n_blocks
-            call description%write_line('<Attribute Name="' // trim(names(i)) &
-                // '" Center="Node">' // item // trim(map) // places // '0 ' // trim(number) &
-                // ' 1 1 ' // trim(map) // '</DataItem>' // trim(data) // '</Attribute>')
+        do i = 1, 2
+            self%layout%axes(:, i) = letters(axes(i))
         end do
-        call description%write_line('</Grid></Domain></Xdmf>')
-        call description%finish()
-        self%file%failed = self%file%failed .or. description%failed
-    end subroutine write_description
+        self%axes = [rows, columns]
+        self%per_part = max(1_int64, part_bytes / field_record_bytes(size(rows, kind=int64) &
+            * size(columns), size(fields)))
+        allocate (self%times(64))
+        call self%take_rows(1, size(rows))
+    end subroutine prepare
+
+    !> The rows of this process, if it is not the only one.
+    subroutine take_rows(self, first, rows)
+        class(field_parts), intent(inout) :: self
+        integer, intent(in) :: first, rows
+
+        if (allocated(self%values)) deallocate (self%values)
+        allocate (self%values(rows * self%layout%columns, self%per_part, self%layout%fields))
+        self%cells_before = (first - 1) * self%layout%columns
+    end subroutine take_rows
+
+    !> Removes what another run has left (first process).
+    subroutine remove_old(self)
+        class(field_parts), intent(in) :: self
+        integer(int64) :: part
+        logical :: there
+
+        call remove_file(self%base // '_fields.h5')
+        call remove_file(self%base // '_fields.xdmf')
+        part = 1
+        do
+            inquire (file=self%part_name(part), exist=there)
+            if (.not. there) exit
+            call remove_file(self%part_name(part))
+            part = part + 1
+        end do
+    end subroutine remove_old
+
+    ! ---- records -----------------------------------------------------------------------------
+
+    !> Begins a record; `put` gives it its fields. A full part must have been saved.
+    subroutine next(self, time)
+        class(field_parts), intent(inout) :: self
+        real(dp), intent(in) :: time
+        real(dp), allocatable :: longer(:)
+
+        if (self%records == size(self%times)) then
+            allocate (longer(2 * self%records))
+            longer(:self%records) = self%times
+            call move_alloc(longer, self%times)
+        end if
+        self%records = self%records + 1
+        self%times(self%records) = time
+    end subroutine next
+
+    !> A field of the record that was begun, on the cells of this process.
+    subroutine put(self, field, values)
+        class(field_parts), intent(inout) :: self
+        integer, intent(in) :: field        !! 1 for the first one
+        real(dp), intent(in) :: values(:)
+
+        self%values(:, self%records_of(self%parts()), field) = values
+    end subroutine put
+
+    !> Must records be saved before another one begins?
+    pure function is_full(self) result(full)
+        class(field_parts), intent(in) :: self
+        logical :: full
+
+        full = .not. self%is_saved() .and. mod(self%records, self%per_part) == 0
+    end function is_full
+
+    pure function is_saved(self) result(saved)
+        class(field_parts), intent(in) :: self
+        logical :: saved
+
+        saved = self%saved == self%records
+    end function is_saved
+
+    ! ---- saving the last part: lay out, write, publish ---------------------------------------
+
+    !> Makes the new file, and knows the places in it (first process).
+    subroutine lay_out(self)
+        class(field_parts), intent(inout) :: self
+
+        self%layout%records = self%records_of(self%parts())
+        self%failed = lay_out_fields(self%part_name(self%parts()) // '.new' // c_null_char, &
+            self%layout, self%places) /= 0
+        self%part_of_places = 0
+    end subroutine lay_out
+
+    !> Writes the numbers of this process (all processes, once they know the places).
+    subroutine write_own(self)
+        class(field_parts), intent(inout) :: self
+        character(len=:), allocatable :: file
+        integer(int64) :: n, first, own, all_cells
+        integer :: k
+        logical :: bad
+
+        file = self%part_name(self%parts()) // '.new' // c_null_char
+        n = self%records_of(self%parts())
+        first = self%records - n + 1
+        own = size(self%values, 1)
+        all_cells = self%layout%rows * self%layout%columns
+        bad = .false.
+        if (self%cells_before == 0) bad = put_numbers(file, self%places(0), 0_int64, 1_int64, n, &
+            self%times(first:self%records)) /= 0
+        do k = 1, int(self%layout%fields)
+            if (own == 0 .or. bad) exit
+            if (own == all_cells) then
+                bad = put_numbers(file, self%places(k), 0_int64, 1_int64, n * own, &
+                    self%values(:, :, k)) /= 0
+            else
+                bad = put_numbers(file, self%places(k) + word * self%cells_before, &
+                    word * all_cells, n, own, self%values(:, :, k)) /= 0
+            end if
+        end do
+        self%failed = bad
+    end subroutine write_own
+
+    !> Gives the new file its name, and joins it to the others (first process, once all have
+    !> written).
+    subroutine publish(self)
+        class(field_parts), intent(inout) :: self
+        type(field_layout) :: whole
+        character(len=:), allocatable :: names, file
+        integer(int64) :: i, length, n
+
+        n = self%parts()
+        file = self%part_name(n)
+        self%failed = .not. rename_file(file // '.new', file)
+        if (self%failed) return
+        if (fields_are_hdf5() == 0) return
+        length = len(file_name(file)) + 1   ! with the null at its end
+        allocate (character(len=n * length) :: names)
+        do i = 1, n
+            names((i - 1) * length + 1:i * length) = file_name(self%part_name(i)) // c_null_char
+        end do
+        whole = self%layout
+        whole%records = self%records
+        file = self%base // '_fields.h5'
+        self%failed = join_fields(file // '.new' // c_null_char, whole, names, length, &
+            self%per_part, self%axes) /= 0
+        if (.not. self%failed) self%failed = .not. rename_file(file // '.new', file)
+    end subroutine publish
+
+    !> Leaves nothing of a part that could not be written whole (first process).
+    subroutine withdraw(self)
+        class(field_parts), intent(in) :: self
+
+        call remove_file(self%part_name(self%parts()) // '.new')
+    end subroutine withdraw
+
+    ! ---- going on with the files of a run that was stopped -----------------------------------
+
+    !> Records in the files that are there, as a run has left them.
+    function count_saved(self) result(records)
+        class(field_parts), intent(inout) :: self
+        integer(int64) :: records
+        integer(int64) :: part
+        logical :: there
+
+        records = 0
+        part = 1
+        do
+            inquire (file=self%part_name(part), exist=there)
+            if (.not. there) exit
+            call self%find_part(part)
+            if (self%failed) exit
+            records = records + self%layout%records
+            part = part + 1
+        end do
+    end function count_saved
+
+    !> Finds the last part again, and the times of all records (first process).
+    subroutine find(self, records)
+        class(field_parts), intent(inout) :: self
+        integer(int64), intent(in) :: records
+        integer(int64) :: part, first, n
+
+        self%records = records
+        deallocate (self%times)
+        allocate (self%times(2 * records))
+        do part = 1, self%parts()
+            n = self%records_of(part)
+            first = (part - 1) * self%per_part + 1
+            call self%find_part(part)
+            if (self%layout%records < n) self%failed = .true.
+            if (self%failed) return
+            self%failed = get_numbers(self%part_name(part) // c_null_char, self%places(0), &
+                0_int64, 1_int64, n, self%times(first:first + n - 1)) /= 0
+        end do
+    end subroutine find
+
+    !> Takes the records of the last part back (all processes, once they know the places).
+    subroutine read_own(self, records)
+        class(field_parts), intent(inout) :: self
+        integer(int64), intent(in) :: records
+        integer(int64) :: n
+        integer :: k
+
+        self%records = records
+        self%saved = records
+        if (size(self%times) < records) self%times = spread(0.0_dp, 1, int(2 * records))
+        n = self%records_of(self%parts())
+        if (size(self%values, 1) == 0) return
+        do k = 1, int(self%layout%fields)
+            if (get_numbers(self%part_name(self%parts()) // c_null_char, self%places(k) + word &
+                * self%cells_before, word * self%layout%rows * self%layout%columns, n, &
+                size(self%values, 1, int64), self%values(:, :, k)) /= 0) self%failed = .true.
+        end do
+    end subroutine read_own
+
+    ! ---- reading, description ----------------------------------------------------------------
+
+    !> A field of one record, of all cells.
+    subroutine read_record(self, record, field, values)
+        class(field_parts), intent(inout) :: self
+        integer(int64), intent(in) :: record
+        integer, intent(in) :: field
+        real(dp), intent(out) :: values(:)
+        integer(int64) :: part
+
+        part = (record - 1) / self%per_part + 1
+        call self%find_part(part)
+        if (.not. self%failed) self%failed = get_numbers(self%part_name(part) // c_null_char, &
+            self%places(field) + word * size(values) * mod(record - 1, self%per_part), 0_int64, &
+            1_int64, size(values, kind=int64), values) /= 0
+    end subroutine read_record
+
+    !> Places in a part, as its file has them.
+    subroutine find_part(self, part)
+        class(field_parts), intent(inout) :: self
+        integer(int64), intent(in) :: part
+
+        if (self%part_of_places == part) return
+        self%part_of_places = part
+        self%failed = find_fields(self%part_name(part) // c_null_char, self%layout, self%places) &
+            /= 0
+    end subroutine find_part
+
+    !> The last of those records from `first` on that one data item of a description can take.
+    function last_together(self, first) result(last)
+        class(field_parts), intent(in) :: self
+        integer(int64), intent(in) :: first
+        integer(int64) :: last
+
+        last = self%saved
+        if (fields_are_hdf5() == 0) last = min(last, first + self%per_part - 1 - mod(first - 1, &
+            self%per_part))
+    end function last_together
+
+    !> XDMF's words for a field of records from `first` on; field 0 are their times.
+    function data_item(self, field, first, n) result(text)
+        class(field_parts), intent(inout) :: self
+        integer, intent(in) :: field
+        integer(int64), intent(in) :: first, n
+        character(len=:), allocatable :: text
+        integer(int64) :: part, shape(3), cells
+        integer :: rank, outer
+
+        shape = [n, self%layout%rows, self%layout%columns]
+        rank = merge(3, 2, self%layout%columns > 1)
+        if (field == 0) rank = 1
+        outer = merge(2, 1, n == 1 .and. field > 0)   ! one record is a map, not a pile of one
+        text = '" NumberType="Float" Precision="8" Format="'
+        if (fields_are_hdf5() /= 0) then
+            text = '<DataItem ItemType="HyperSlab" Dimensions="' &
+                // whole_words(shape(outer:rank)) // '"><DataItem Dimensions="3 ' &
+                // whole_words([int(rank, int64)]) // '" Format="XML">' &
+                // whole_words([first - 1, 0_int64 * shape(2:rank), 0_int64 * shape(:rank) + 1, &
+                shape(:rank)]) // '</DataItem><DataItem Dimensions="' &
+                // whole_words([self%saved, shape(2:rank)]) // text // 'HDF">' &
+                // file_name(self%base) // '_fields.h5:/' // field_name(self, field) &
+                // '</DataItem></DataItem>'
+        else
+            part = (first - 1) / self%per_part + 1
+            call self%find_part(part)
+            cells = merge(1_int64, shape(2) * shape(3), field == 0)
+            text = '<DataItem Dimensions="' // whole_words(shape(outer:rank)) // text &
+                // 'Binary" Endian="Little" Seek="' // whole_words([self%places(field) + word &
+                * cells * mod(first - 1, self%per_part)]) // '">' &
+                // file_name(self%part_name(part)) // '</DataItem>'
+        end if
+    end function data_item
+
+    pure function field_name(self, field) result(text)
+        type(field_parts), intent(in) :: self
+        integer, intent(in) :: field
+        character(len=:), allocatable :: text
+        integer :: i
+
+        text = 'time'
+        if (field == 0) return
+        text = ''
+        do i = 1, name_length
+            if (self%layout%names(i, field) == c_null_char) return
+            text = text // self%layout%names(i, field)
+        end do
+    end function field_name
+
+    ! ---- names and numbers -------------------------------------------------------------------
+
+    !> Parts of all records.
+    pure function parts(self) result(n)
+        class(field_parts), intent(in) :: self
+        integer(int64) :: n
+
+        n = (self%records - 1) / self%per_part + 1
+    end function parts
+
+    !> Records of a part.
+    pure function records_of(self, part) result(n)
+        class(field_parts), intent(in) :: self
+        integer(int64), intent(in) :: part
+        integer(int64) :: n
+
+        n = min(self%per_part, self%records - (part - 1) * self%per_part)
+    end function records_of
+
+    function part_name(self, part) result(name)
+        class(field_parts), intent(in) :: self
+        integer(int64), intent(in) :: part
+        character(len=:), allocatable :: name
+        character(len=20) :: number
+
+        write (number, '(i6.6)') part
+        name = self%base // '_fields_' // trim(number) // merge('.h5 ', '.bin', &
+            fields_are_hdf5() /= 0)
+        name = trim(name)
+    end function part_name
+
+    pure function file_name(path) result(name)
+        character(len=*), intent(in) :: path
+        character(len=:), allocatable :: name
+
+        name = path(index(path, '/', back=.true.) + 1:)
+    end function file_name
+
+    pure function letters(name) result(all_letters)
+        character(len=*), intent(in) :: name
+        character(kind=c_char) :: all_letters(name_length)
+        integer :: i
+
+        all_letters = c_null_char
+        do i = 1, min(len_trim(name), name_length - 1)
+            all_letters(i) = name(i:i)
+        end do
+    end function letters
+
+    !> Whole numbers as words of XDMF.
+    pure function whole_words(numbers) result(text)
+        integer(int64), intent(in) :: numbers(:)
+        character(len=:), allocatable :: text
+        character(len=240) :: words
+
+        write (words, '(*(i0, :, 1x))') numbers
+        text = trim(words)
+    end function whole_words
 
 end module field_file

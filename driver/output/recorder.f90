@@ -4,7 +4,7 @@ module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : archive
     use chain_events, only : chain_event
-    use field_file, only : chain_fields
+    use chain_fields, only : chain_field_file
     use number_text, only : full_row
     use run_observer, only : observer, step_news
     use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
@@ -26,7 +26,7 @@ module recorder
 
     type, extends(observer) :: csv_recorder
         type(output_file) :: series, events
-        type(chain_fields) :: fields
+        type(chain_field_file) :: fields
         type(thinned) :: picture        !! rows for the picture of a long series
         character(len=:), allocatable :: base   !! of the files' names, with the directory
         integer :: n_blocks = 1
@@ -82,7 +82,8 @@ contains
     !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
     subroutine go_on(self, series, events, fields)
         class(csv_recorder), intent(inout) :: self
-        integer(int64), intent(in) :: series, events, fields   !! bytes
+        integer(int64), intent(in) :: series, events   !! bytes
+        integer(int64), intent(in) :: fields           !! records
 
         call self%series%go_on(self%base // '.csv', series)
         call self%events%go_on(self%base // '_events.csv', events)
@@ -131,8 +132,8 @@ contains
 
         if (self%series%failed) call news%stop_run('cannot write the time series (disk full?)')
         if (self%events%failed) call news%stop_run('cannot write the events (disk full?)')
-        if (self%fields%file%failed) call news%stop_run('cannot write the fields (disk full?)')
-        if (self%series%bytes + self%fields%file%bytes > self%table_limit) call news%stop_run( &
+        if (self%fields%parts%failed) call news%stop_run('cannot write the fields (disk full?)')
+        if (self%series%bytes + self%fields%bytes() > self%table_limit) call news%stop_run( &
             'the tables are as large as &output table_limit: resume the run with a larger one')
     end subroutine tell_loss
 
@@ -145,12 +146,12 @@ contains
         call self%write_chain_events(news)
         call self%series%finish()
         call self%events%finish()
-        call self%fields%finish()
+        call self%fields%save()
         if (self%rows > self%picture%kept()) call self%write_thinned()
         if (self%failed()) call news%stop_run('cannot write the last rows (disk full?)')
     end subroutine finish
 
-    !> Keeps the places of the files' ends; cuts the files to there when these are read.
+    !> Keeps how much is in the files, and goes on behind that when it is read.
     subroutine visit(self, file)
         class(csv_recorder), intent(inout) :: self
         type(archive), intent(inout) :: file
@@ -158,7 +159,7 @@ contains
 
         series = self%series%bytes
         events = self%events%bytes
-        fields = self%fields%file%bytes
+        fields = self%fields%parts%records
         call file%visit(self%rows, self%clock%steps, self%fields_due)
         call self%picture%visit(file)
         call file%visit(series, events, fields)
@@ -193,6 +194,7 @@ contains
 
         call self%series%flush_lines()
         call self%events%flush_lines()
+        call self%fields%save()
     end subroutine flush_all
 
     !> Has something been lost on its way to the disk?
@@ -200,7 +202,7 @@ contains
         class(csv_recorder), intent(in) :: self
         logical :: lost
 
-        lost = self%series%failed .or. self%events%failed .or. self%fields%file%failed
+        lost = self%series%failed .or. self%events%failed .or. self%fields%parts%failed
     end function failed
 
     !> One row of the time series.

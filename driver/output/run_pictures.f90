@@ -2,7 +2,7 @@
 module run_pictures
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_table, only : block_columns, column_label
-    use field_file, only : sample_fields
+    use chain_fields, only : sample_fields
     use law_facts, only : internal_variable
     use number_text, only : whole_text
     use picture, only : picture_values

@@ -4,10 +4,10 @@ module sweep_table
     use number_text, only : quoted_field, short_text
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use run_warnings, only : find_warnings, run_warning
     use steady_sliding, only : sliding_case, take_piece
     use linear_stability, only : analyse, stability, undecided, verdicts
     use sweep_settings, only : sweep_axis
+    use run_warnings, only : find_warnings, run_warning
     implicit none
     private
 

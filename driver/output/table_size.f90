@@ -1,7 +1,7 @@
 !> How much room on disk the tables of a run will take.
 module table_size
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use field_file, only : field_record_bytes
+    use chain_fields, only : chain_record_bytes
     use run_rows, only : series_size
     use run_settings, only : settings
     implicit none
@@ -28,7 +28,7 @@ contains
         end if
         bytes = rows * number * series_size(run)
         if (run%fields > 0 .and. .not. run%adaptive) bytes = bytes + real(run%n_steps, dp) &
-            / run%fields * real(field_record_bytes(run%chain%n_blocks), dp)
+            / run%fields * real(chain_record_bytes(run%chain%n_blocks), dp)
     end function expected_bytes
 
     !> `problem` is empty, or says that the tables are going to be larger than they may.

@@ -1,16 +1,19 @@
 """The verb fault: a benchmark, restarts, any number of processes, input that is wrong."""
-import array
 import csv
 import filecmp
+import math
 import os
 import pathlib
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 import xml.etree.ElementTree
+
+from field_reader import read_fields
 
 PROGRAM = os.environ['STICKSLIP']
 ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault')
@@ -44,6 +47,9 @@ SUBLOADING = """
 &output stations = 0, 10e3, checkpoint = 0 /
 """
 A = 'z,a,mu_k,traction\n0,0.010,0.51,22.5e6\n15e3,0.010,0.51,22.5e6\n18e3,0.025,0.60,22.5e6\n'
+FIELDS = ('slip_rate', 'slip', 'traction', 'internal')
+# files of fields have room for 60 records of so many cells
+PARTS = PLANE.replace('nx = 30, nz = 21', 'nx = 96, nz = 90').replace('fields = 5', 'fields = 1').replace('3e8', '2e9')
 START = 'x,z,traction,slip_rate\n' + ''.join(
     f'{x},{z},{32e6 if (x, z) == (0, 20e3) else 30e6},{1e-9}\n'
     for z in (0, 10e3, 20e3, 30e3, 40e3) for x in (-30e3, -10e3, 0, 10e3, 30e3))
@@ -89,7 +95,11 @@ class FaultTest(unittest.TestCase):
             self.assertTrue(filecmp.cmp(self.place / a / name, self.place / b / name, shallow=False), name)
 
     def kill_and_resume(self, name, seconds, processes, then_processes):
-        """Kills a run some time after its first checkpoint; resumed, it leaves the files of 'whole'."""
+        self.kill(name, seconds, processes)
+        self.resume(name, then_processes)
+
+    def kill(self, name, seconds, processes):
+        """Kills a run some time after its first checkpoint."""
         shutil.rmtree(self.place / 'parts', ignore_errors=True)
         run = subprocess.Popen(self.command(processes, name, '--output', 'parts', '--quiet'), cwd=self.place,
                                env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -99,11 +109,18 @@ class FaultTest(unittest.TestCase):
         for process in descendants(run.pid):
             os.kill(process, signal.SIGKILL)
         run.wait()
+
+    def resume(self, name, processes):
+        """A run that was killed leaves the files of 'whole' in the end."""
         if (self.place / 'parts' / 'case.checkpoint').exists():   # else the run was done before
-            self.run_fault(name, '--output', 'parts', '--quiet', '--resume', processes=then_processes)
+            self.run_fault(name, '--output', 'parts', '--quiet', '--resume', processes=processes)
         for path in (self.place / 'parts').glob('*.new'):
             path.unlink()
         self.assert_same_files('whole', 'parts')
+
+    def rows(self, name):
+        with open(self.place / name, newline='') as file:
+            return {float(row['time']): row for row in csv.DictReader(file)}
 
     def events(self, directory, stem):
         with open(self.place / directory / f'{stem}_events.csv', newline='') as file:
@@ -163,6 +180,20 @@ class Processes(FaultTest):
         self.kill_and_resume(name, 0.3, 2, 1)
         self.kill_and_resume(name, 0.05, 1, 2)
 
+    def test_killed_runs_leave_the_fields_that_were_saved_and_go_on_to_the_same(self):
+        name = self.write(PARTS)
+        self.run_fault(name, '--output', 'whole', '--quiet')
+        self.assertGreater(len(list((self.place / 'whole').glob('case_fields_0*'))), 1)
+        whole = read_fields(self.place / 'whole' / 'case', FIELDS, 96 * 90)
+        for seconds, processes, then in ((0.1, 2, 3), (0.4, 1, 2), (0.7, 3, 1)):
+            self.kill(name, seconds, processes)
+            times, fields = read_fields(self.place / 'parts' / 'case', FIELDS, 96 * 90)
+            self.assertGreater(len(times), 3)
+            self.assertEqual(times, whole[0][:len(times)])
+            for field in FIELDS:
+                self.assertEqual(fields[field], whole[1][field][:len(times)])
+            self.resume(name, then)
+
 
 class Restart(FaultTest):
     def test_killed_runs_go_on_to_the_same_files(self):
@@ -202,35 +233,65 @@ class Restart(FaultTest):
 class Output(FaultTest):
     def test_fields_hold_what_the_station_does(self):
         self.run_fault(self.write(PLANE), '--quiet')
-        numbers = array.array('d', (self.place / 'case_out' / 'case_fields.bin').read_bytes())
-        record = 1 + 4 * 30 * 21
-        self.assertEqual(len(numbers) % record, 0)
-        with open(self.place / 'case_out' / 'case_station_1.csv', newline='') as file:
-            rows = {float(row['time']): row for row in csv.DictReader(file)}
+        times, fields = read_fields(self.place / 'case_out' / 'case', FIELDS, 30 * 21)
         cell = 17 + 30 * 10   # x = 5 km, z = 20 km
-        self.assertGreater(len(numbers) // record, 3)
-        for first in range(0, len(numbers), record):
-            row = rows[numbers[first]]
-            self.assertEqual(float(row['slip']), numbers[first + 1 + 30 * 21 + cell])
-            self.assertEqual(float(row['traction']), numbers[first + 1 + 2 * 30 * 21 + cell])
+        rows = self.rows('case_out/case_station_1.csv')
+        self.assertGreater(len(times), 3)
+        for k, time_ in enumerate(times):
+            row = rows[time_]
+            self.assertEqual(float(row['slip']), fields['slip'][k][cell])
+            self.assertEqual(float(row['traction']), fields['traction'][k][cell])
+            self.assertAlmostEqual(float(row['log10_slip_rate']), math.log10(fields['slip_rate'][k][cell]), delta=1e-14)
+            self.assertAlmostEqual(float(row['log10_theta']), fields['internal'][k][cell] / math.log(10), delta=1e-14)
         described = xml.etree.ElementTree.parse(self.place / 'case_out' / 'case_fields.xdmf')
-        self.assertEqual(len(described.findall('.//Time')), len(numbers) // record)
-        last = described.findall('.//DataItem[@Format="Binary"]')[-1]
-        self.assertEqual(int(last.get('Seek')), 8 * (len(numbers) - 30 * 21))
+        self.assertEqual([float(time_.get('Value')) for time_ in described.findall('.//Time')], times)
+        last = described.findall('.//Attribute[@Name="internal"]/DataItem')[-1]
+        self.assertEqual(last.get('Dimensions'), '21 30')
+        if last.get('Format') == 'Binary':
+            self.assertEqual(int(last.get('Seek')), 8 * (len(times) * (1 + 4 * 30 * 21) - 30 * 21))
+        else:
+            self.assertEqual([part.text for part in last], [f'{len(times) - 1} 0 0 1 1 1 1 21 30', 'case_fields.h5:/internal'])
+
+    def test_fields_are_read_by_h5py(self):
+        python = next((python for python in (sys.executable, '/usr/bin/python3') if not subprocess.run(
+            [python, '-c', 'import h5py'], capture_output=True).returncode), None)
+        self.run_fault(self.write(PLANE), '--quiet')
+        if python is None or not (self.place / 'case_out' / 'case_fields.h5').exists():
+            self.skipTest('no h5py, or built without HDF5')
+        told = subprocess.run([python, '-c', 'import h5py; f = h5py.File("case_out/case_fields.h5"); '
+                               'print(*f["slip"].shape, f["z"][20], f["x"][0], repr(float(f["slip"][-1, 10, 17])))'],
+                              cwd=self.place, check=True, capture_output=True, text=True).stdout.split()
+        times, fields = read_fields(self.place / 'case_out' / 'case', FIELDS, 30 * 21)
+        self.assertEqual(told[:3], [str(len(times)), '21', '30'])
+        self.assertAlmostEqual(float(told[3]), 40e3 * 20.5 / 21, delta=1e-9)
+        self.assertEqual(float(told[4]), -29e3)
+        self.assertEqual(float(told[5]), fields['slip'][-1][17 + 30 * 10])
 
     def test_full_disk_leaves_whole_records(self):
-        name = self.write(PLANE.replace('checkpoint = 0', 'checkpoint = 60').replace('3e8', '1e10'))
+        name = self.write(PLANE.replace('3e8', '1e10').replace('fields = 5', 'fields = 1'))
         (self.place / 'small').mkdir()
-        mounted = subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=128k', 'none', 'small'], cwd=self.place,
+        mounted = subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=1m', 'none', 'small'], cwd=self.place,
                                  capture_output=True)
         if mounted.returncode:
             self.skipTest('no small disk can be mounted')
         self.addCleanup(subprocess.run, ['umount', self.place / 'small'])
-        done = self.run_fault(name, '--quiet', '--output', 'small', expect=1)
-        self.assertIn('disk full?', done.stderr)
-        size = (self.place / 'small' / 'case_fields.bin').stat().st_size
-        self.assertEqual(size % (8 * (1 + 4 * 30 * 21)), 0)
-        self.assertGreater(size, 0)
+        for processes in (1, 2) if MPIRUN else (1,):
+            done = self.run_fault(name, '--quiet', '--output', 'small', expect=1, processes=processes)
+            self.assertIn('_fields* (disk full?)', done.stderr)
+            times, fields = read_fields(self.place / 'small' / 'case', FIELDS, 30 * 21)
+            rows = self.rows('small/case_station_1.csv')
+            self.assertGreater(len(times), 3)
+            self.assertEqual(list(rows)[:len(times)], times)
+            for row, slip in zip(rows.values(), fields['slip']):
+                self.assertEqual(float(row['slip']), slip[17 + 30 * 10])
+            self.assertEqual(list((self.place / 'small').glob('*.h5.new')), [])
+
+    def test_fields_that_cannot_be_written_are_told(self):
+        name = self.write(PLANE)
+        (self.place / 'case_out').mkdir()
+        for kind in ('h5', 'bin'):
+            (self.place / 'case_out' / f'case_fields_000001.{kind}.new').mkdir()
+        self.assertIn('cannot write to case_out/case_fields*', self.run_fault(name, '--quiet', expect=1).stderr)
 
     def test_energy_is_balanced(self):
         for text, allowed in ((SMALL, 1e-6), (PLANE, 1e-6), (HALF, 1e-6), (SUBLOADING, 1e-4)):
