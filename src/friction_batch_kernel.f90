@@ -226,6 +226,14 @@ contains
             == lane_cotangent .or. task%kind == lane_reciprocal
     end function mobilises
 
+    !> Does the coefficient in the state follow from the slip rate?
+    pure function follows_rate(task)
+        type(block_task), intent(in) :: task
+        logical :: follows_rate
+
+        follows_rate = task%kind == lane_ageing .or. task%kind == lane_slip_law
+    end function follows_rate
+
     !> Strengths with cohesion; contacts that just touch are left.
     pure subroutine add_cohesion(task, du, statev, rest, valid)
         type(block_task), intent(in) :: task
@@ -555,7 +563,7 @@ contains
         call slide_by_law(task, constants, block)
         ! Round-off decides whether the cap holds; or it is all of a slip whose logarithm counts.
         near = 4.0_wp * verge
-        if (task%kind == lane_ageing .or. task%kind == lane_slip_law) near = 1.0e-3_wp
+        if (follows_rate(task)) near = 1.0e-3_wp
         do i = 1, block%n
             block%trial(i) = trial(i)
             if (block%resistance(i) > constants(i, c_cap)) held(i) = 1.0_wp
@@ -587,6 +595,7 @@ contains
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(inout) :: block
+        real(wp), parameter :: few_digits = 0.02_wp
         real(wp) :: trial(lanes)
         integer :: i
 
@@ -596,6 +605,10 @@ contains
         end do
         call slide_bare(task, constants, block)
         do i = 1, block%n
+            ! the state tells the law's part, of which a difference has too few digits
+            if (follows_rate(task) .and. block%trial(i) < few_digits * trial(i)) then
+                block%left(i) = 1.0_wp
+            end if
             block%trial(i) = trial(i)
             block%resistance(i) = block%resistance(i) + task%cohesion
         end do

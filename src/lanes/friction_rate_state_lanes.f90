@@ -2,6 +2,8 @@
 module friction_rate_state_lanes
     use, intrinsic :: iso_fortran_env, only : wp => real64
     use friction_lane_block, only : c_own, lanes, n_constants, rest_block, slide_block
+    use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
+        may_vanish, ranges, slip_range, slipped_bounds, slipped_fall
     use friction_rate_state_core, only : aged_slope, aged_state, asinh_of, decayed_part, far, &
         mean_decay, slipped_slope, slope_of, state_exponent
     implicit none
@@ -21,12 +23,12 @@ module friction_rate_state_lanes
     !> What the iteration needs of a block, and where it is.
     type :: search
         real(wp) :: u_0(lanes)         !! u of the core without slip and theta's change
-        real(wp) :: per_d_c(lanes), b_over_a(lanes)
+        real(wp) :: per_d_c(lanes), ln_d_c(lanes), b_over_a(lanes)
         real(wp) :: ln_theta_n(lanes)  !! at the start of the increment
         real(wp) :: z(lanes)           !! ln(slip)
         real(wp) :: ln_theta(lanes)    !! at the end of the increment
         real(wp) :: low(lanes), high(lanes)   !! the bracket of z
-        real(wp) :: several(lanes)     !! 1 where several equilibria are possible, else 0
+        real(wp) :: several(lanes)     !! above 0 where several equilibria are possible
         logical :: ages                !! ageing law, else slip law
         real(wp) :: dt                 !! [T]
     end type search
@@ -67,9 +69,11 @@ contains
         now%ages = ages
         now%dt = dt
         call begin(constants, block, now)
+        if (any(now%several(:block%n) > 0.0_wp)) call look_closer(constants, block, now)
         call start(constants, block, now)
         do i = 1, block%n
-            block%left(i) = active * (1.0_wp - now%several(i))
+            now%several(i) = max(now%several(i), now%low(i) + 1.0_wp - now%high(i))
+            block%left(i) = merge(0.0_wp, active, now%several(i) > 0.0_wp)
             block%slip(i) = block%trial(i) / block%stiffness(i)   ! numbers for those that are left
             block%mu_end(i) = 0.0_wp
             block%d_slip(i) = 0.0_wp
@@ -90,7 +94,7 @@ contains
             block%d_slip(i) = block%d_slip(i) / block%slip(i)
             block%d_pressure(i) = block%mu_end(i)
             block%resistance(i) = block%mu_end(i) * block%pressure(i)
-            block%left(i) = block%left(i) + now%several(i)
+            block%left(i) = max(block%left(i), now%several(i))
         end do
     end subroutine slide_rate_state
 
@@ -99,14 +103,14 @@ contains
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(in) :: block
         type(search), intent(inout) :: now
-        real(wp), dimension(lanes) :: ln_d_c, ln_v0, left, x
+        real(wp), dimension(lanes) :: ln_v0, left, x
         real(wp) :: ln_dt, fastest, aged, older, pull
         integer :: i
 
         older = merge(1.0_wp, 0.0_wp, now%ages)
         ln_dt = log(now%dt)
         do i = 1, block%n
-            ln_d_c(i) = log(constants(i, c_d_c))
+            now%ln_d_c(i) = log(constants(i, c_d_c))
         end do
         do i = 1, block%n
             ln_v0(i) = log(constants(i, c_v0))
@@ -124,23 +128,89 @@ contains
             left(i) = exp(-x(i))
         end do
         do i = 1, block%n
-            now%low(i) = ln_d_c(i) + ln_least_slip
+            now%low(i) = now%ln_d_c(i) + ln_least_slip
             now%u_0(i) = state_exponent(constants(i, c_a), constants(i, c_b), constants(i, c_f0), &
-                ln_v0(i) - ln_d_c(i)) - (ln_dt + ln_2 + ln_v0(i))
-            pull = ln_dt - (now%high(i) - ln_d_c(i)) - now%ln_theta_n(i)
+                ln_v0(i) - now%ln_d_c(i)) - (ln_dt + ln_2 + ln_v0(i))
+            pull = ln_dt - (now%high(i) - now%ln_d_c(i)) - now%ln_theta_n(i)
             fastest = 1.0_wp - pull * left(i)
             if (pull <= 0.0_wp) fastest = 1.0_wp - pull
             aged = min(1.0_wp, (block%r(i) + 0.5_wp * now%dt) / aged_state(block%r(i), now%dt, &
                 left(i), mean_decay(x(i), left(i))))
             fastest = older * aged + (1.0_wp - older) * fastest   ! fall of ln(theta) with slip/d_c
-            now%several(i) = 0.0_wp
-            if (max(block%pressure(i) * (constants(i, c_b) * fastest * now%per_d_c(i) - &
-                constants(i, c_a) * block%stiffness(i) / block%trial(i)) - block%stiffness(i), &
-                now%low(i) + 1.0_wp - now%high(i)) > 0.0_wp) then
-                now%several(i) = 1.0_wp
-            end if
+            now%several(i) = block%pressure(i) * (constants(i, c_b) * fastest * now%per_d_c(i) &
+                - constants(i, c_a) * block%stiffness(i) / block%trial(i)) - block%stiffness(i)
         end do
     end subroutine begin
+
+    !> Where one bound for all slips does not tell that there is one equilibrium, several do; points
+    !> at which they do not are left.
+    pure subroutine look_closer(constants, block, now)
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        type(slide_block), intent(in) :: block
+        type(search), intent(inout) :: now
+        real(wp), dimension(lanes) :: t, k, ratio, may
+        real(wp) :: longest
+        integer :: i, j
+
+        longest = 0.0_wp
+        do i = 1, block%n
+            t(i) = block%trial(i) / (constants(i, c_a) * block%pressure(i))
+            k(i) = t(i) * (block%stiffness(i) * constants(i, c_d_c) / block%trial(i))
+            longest = max(longest, t(i) / k(i))
+            ratio(i) = block%r(i) / now%dt
+            if (.not. now%ages) ratio(i) = log(now%dt) - now%ln_theta_n(i)
+            now%several(i) = may_turn_far(k(i), now%b_over_a(i), block%r(i) / now%dt, 0.0_wp)
+            if (ranges(size(ranges))%to * k(i) > t(i)) now%several(i) = 0.0_wp
+        end do
+        do j = 1, size(ranges)
+            if (ranges(j)%from > longest) exit
+            if (now%ages) then
+                do i = 1, block%n
+                    may(i) = may_turn(ranges(j), k(i), now%b_over_a(i) * aged_fall(ranges(j), &
+                        ratio(i)))
+                end do
+            else
+                do i = 1, block%n
+                    may(i) = may_turn(ranges(j), k(i), now%b_over_a(i) * slipped_fall(ranges(j), &
+                        ratio(i), 0.0_wp))
+                end do
+            end if
+            if (any(may(:block%n) > 0.0_wp)) call exclude_roots(ranges(j), t, k, ratio, block%n, &
+                now, may)
+            do i = 1, block%n
+                now%several(i) = max(now%several(i), may(i))
+            end do
+        end do
+    end subroutine look_closer
+
+    !> Points whose misfit may turn in a range, but is not zero there.
+    pure subroutine exclude_roots(range, t, k, ratio, n, now, may)
+        type(slip_range), intent(in) :: range
+        real(wp), dimension(lanes), intent(in) :: t, k
+        real(wp), intent(in) :: ratio(lanes)   !! theta/dt, by the slip law ln(dt/theta)
+        integer, intent(in) :: n
+        type(search), intent(in) :: now
+        real(wp), intent(inout) :: may(lanes)   !! above 0 if it may
+        real(wp) :: x_0, low, high, ln_dt
+        integer :: i
+
+        ln_dt = log(now%dt)
+        if (now%ages) then
+            do i = 1, n
+                x_0 = now%u_0(i) + now%ln_d_c(i) + now%b_over_a(i) * ln_dt
+                call aged_bounds(range, ratio(i), low, high)
+                may(i) = min(may(i), may_vanish(range, t(i), k(i), x_0 + now%b_over_a(i) * low, &
+                    x_0 + now%b_over_a(i) * high))
+            end do
+        else
+            do i = 1, n
+                x_0 = now%u_0(i) + now%ln_d_c(i) + now%b_over_a(i) * now%ln_theta_n(i)
+                call slipped_bounds(range, ratio(i), 0.0_wp, low, high)
+                may(i) = min(may(i), may_vanish(range, t(i), k(i), x_0 + now%b_over_a(i) * low, &
+                    x_0 + now%b_over_a(i) * high))
+            end do
+        end if
+    end subroutine exclude_roots
 
     !> The slip if the state does not evolve by slip and the spring does not unload.
     pure subroutine start(constants, block, now)
@@ -199,12 +269,9 @@ contains
         else
             ln_dt = log(now%dt)
             do i = 1, block%n
-                theta(i) = log(slip(i) * now%per_d_c(i))
-            end do
-            do i = 1, block%n
                 x = slip(i) * now%per_d_c(i)
                 mean = mean_decay(x, left(i))
-                pull = ln_dt - theta(i) - now%ln_theta_n(i)
+                pull = ln_dt - (now%z(i) - now%ln_d_c(i)) - now%ln_theta_n(i)
                 ln_theta(i) = now%ln_theta_n(i) + x * mean * pull
                 by_ln_slip(i) = slipped_slope(x, left(i), mean, pull)
             end do
@@ -220,7 +287,7 @@ contains
         type(search), intent(inout) :: now
         real(wp), intent(out) :: still   !! above 0 as long as a point has not settled
         real(wp), dimension(lanes) :: u, e_u, y
-        real(wp) :: by_z, fall, misfit, move, next, steepness
+        real(wp) :: by_z, fall, per_fall, misfit, move, next, steepness
         logical :: nearly
         integer :: i
 
@@ -240,12 +307,14 @@ contains
             misfit = block%trial(i) - block%stiffness(i) * slip(i) - constants(i, c_a) * y(i) &
                 * block%pressure(i)
             fall = max(block%stiffness(i) * slip(i) + by_z, epsilon(fall) * block%trial(i))
+            per_fall = 1.0_wp / fall
             if (misfit > 0.0_wp) now%low(i) = now%z(i)
             if (misfit <= 0.0_wp) now%high(i) = now%z(i)
-            move = misfit / fall
+            move = misfit * per_fall
             ! u bends the more, the faster it changes: far from equilibrium with its slip the state
             ! may change by a power of the slip, and u by b/a of its logarithm
-            steepness = max(1.0_wp, abs(1.0_wp + now%b_over_a(i) * by_ln_slip(i)))
+            steepness = abs(1.0_wp + now%b_over_a(i) * by_ln_slip(i))
+            steepness = max(1.0_wp, steepness, steepness * (abs(by_z) * per_fall))
             nearly = abs(move) * steepness <= small
             next = now%z(i) + move
             if (max(now%low(i) - next, next - now%high(i)) >= 0.0_wp .and. .not. nearly) then

@@ -165,17 +165,13 @@ contains
         real(wp), intent(in) :: left    !! e^-x
         real(wp), intent(out) :: mean   !! (1 - e^-x)/x
         real(wp), intent(out) :: fall   !! > 0
-        real(wp) :: back
+        real(wp) :: back, m, f   ! of the magnitude
 
-        if (x < 0.0_wp) then   ! what decays backwards
-            back = exp(x)
-            mean = mean_decay(-x, back)
-            fall = left * (mean - fall_of_mean(-x, back, mean))
-            mean = left * mean
-        else
-            mean = mean_decay(x, left)
-            fall = fall_of_mean(x, left, mean)
-        end if
+        back = exp(-abs(x))
+        m = mean_decay(abs(x), back)
+        f = fall_of_mean(abs(x), back, m)
+        mean = merge(left * m, m, x < 0.0_wp)   ! what decays backwards
+        fall = merge(left * (m - f), f, x < 0.0_wp)
     end subroutine mean_growth
 
     !> Minus the derivative of `mean_decay` by x, 1/2 at x = 0; it shrinks with x.
@@ -186,12 +182,9 @@ contains
         real(wp) :: fall
         real(wp), parameter :: small = 1.0e-3_wp   !! below, the series is exact to round-off
 
-        if (x > small) then
-            fall = (mean - left) / x
-        else
-            fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
-                / 144.0_wp)))
-        end if
+        fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
+            / 144.0_wp)))
+        if (x > small) fall = (mean - left) / max(x, small)   ! lanes divide in any case
     end function fall_of_mean
 
 end module friction_rate_state_core

@@ -21,6 +21,8 @@ module friction_rate_state_law
         load_rates, named_law, onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         no_constants, positive
+    use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
+        may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
     use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
         fall_of_mean, mean_decay, mean_growth, slip_law_rate, slipped_slope, slope_asinh_exp, &
         state_exponent
@@ -515,15 +517,14 @@ contains
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 100
-        real(wp) :: small, low, high, misfit, fall, step, e_low, e_high
+        real(wp) :: small, low, high, misfit, by_ln_slip, fall, step
         integer :: iteration
 
         solved = .false.
         low = least_slip * self%d_c
         high = trial / stiffness
         if (.not. low < high) return
-        call evolution_bounds(self, [low, high], pressure, dt, old%r, e_low, e_high)
-        if (pressure * (self%b * e_high / self%d_c - self%a / high) > stiffness) return
+        if (may_balance_more_than_once(self, trial, stiffness, pressure, dt, old%r)) return
 
         small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
         answer%slip = max(low, creep(self, trial, pressure, dt, old%r, high))
@@ -544,8 +545,11 @@ contains
                 solved = .true.
                 cycle
             end if
-            fall = answer%slip * (stiffness + answer%d_slip)
+            by_ln_slip = answer%slip * answer%d_slip
+            fall = answer%slip * stiffness + by_ln_slip
             solved = abs(misfit) <= small * fall
+            if (solved) solved = abs(misfit) * steepness(self, pressure, by_ln_slip, fall, &
+                answer%resistance) <= small * fall
             if (abs(misfit) < 100.0_wp * fall) then
                 step = misfit / fall
                 answer%slip = answer%slip * exp(step)
@@ -556,6 +560,66 @@ contains
         end do
         solved = .false.
     end subroutine solve
+
+    !> How fast the slope by ln(slip) changes with that, as a share of it, at most about; as far as
+    !> that is a number to go on with.
+    pure function steepness(self, pressure, by_ln_slip, fall, resistance)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: pressure, resistance   !! [F/L^2]
+        real(wp), intent(in) :: by_ln_slip   !! d(resistance)/d(ln slip) [F/L^2]
+        real(wp), intent(in) :: fall         !! of the misfit with ln(slip) [F/L^2]
+        real(wp) :: steepness                !! 1 or more
+        real(wp), parameter :: least_share = 1.0e-8_wp
+        real(wp) :: least
+
+        least = max(least_share * abs(by_ln_slip), tiny(least) / epsilon(least))
+        steepness = abs(by_ln_slip) / max(min(self%a * pressure, resistance), least)
+        steepness = max(1.0_wp, steepness * max(1.0_wp, abs(by_ln_slip) / max(fall, least)))
+    end function steepness
+
+    !> Where one bound for all slips does not tell that there is one equilibrium, several do.
+    pure function may_balance_more_than_once(self, trial, stiffness, pressure, dt, theta_n) &
+        result(may)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt, theta_n
+        logical :: may
+        real(wp), parameter :: least_share = 1.0e-100_wp
+        type(slip_range) :: range
+        real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall
+        integer :: i
+
+        call evolution_bounds(self, [least_slip * self%d_c, trial / stiffness], pressure, dt, &
+            theta_n, e_low, e_high)
+        may = pressure * (self%b * e_high / self%d_c - self%a * (stiffness / trial)) > stiffness
+        if (.not. may .or. self%evolution == shifted) return
+        if (self%a * pressure < least_share * max(trial, stiffness * self%d_c)) return
+        t = trial / (self%a * pressure)
+        k = stiffness * self%d_c / (self%a * pressure)
+        b_over_a = self%b / self%a
+        pressed = 0.0_wp
+        if (self%alpha > 0.0_wp) pressed = pressing(self, pressure)
+        x_0 = direct_exponent(self, self%d_c, dt, log(merge(dt, theta_n, self%evolution == ageing)))
+        do i = 1, size(ranges)
+            if (k * ranges(i)%from > t) exit
+            range = ranges(i)
+            if (self%evolution == ageing) then
+                if (self%alpha > 0.0_wp) range = pressed_range(range, pressed)
+                fall = aged_fall(range, theta_n / dt)
+            else
+                fall = slipped_fall(range, log(dt) - log(theta_n), pressed)
+            end if
+            if (may_turn(range, k, b_over_a * fall) <= 0.0_wp) cycle
+            if (self%evolution == ageing) then
+                call aged_bounds(range, theta_n / dt, low, high)
+            else
+                call slipped_bounds(range, log(dt) - log(theta_n), pressed, low, high)
+            end if
+            may = may_vanish(range, t, k, x_0 + b_over_a * low, x_0 + b_over_a * high) > 0.0_wp
+            if (may) return
+        end do
+        may = k * ranges(size(ranges))%to < t .and. may_turn_far(k, b_over_a, theta_n / dt, &
+            pressed) > 0.0_wp
+    end function may_balance_more_than_once
 
     !> The stiffer of the two, spring or law, knows the traction better.
     pure subroutine settle(self, misfit, stiffness, pressure, answer)
