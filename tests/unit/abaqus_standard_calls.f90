@@ -29,6 +29,8 @@ module abaqus_standard_calls
         real(dp) :: sse = 0.0_dp, spd = 0.0_dp, pnewdt = 1.0_dp
     end type umat_answer
 
+    integer, public :: n_statev = 8   !! how many state variables the host says that there are
+
     character(len=80), parameter :: name = 'CONTACT'
     external :: fric, uinter, umat
 
@@ -46,7 +48,7 @@ contains
         call fric(answer%lm, tau, answer%by_du(1:n, 1:n), answer%by_p, answer%dslip, answer%sed, &
             answer%sfd, answer%by_temperature(1:n, :), answer%pnewdt, statev, dgam, zero, press, &
             0.0_dp, 0.0_dp, zero, 1, 1, zero, dtime, 1, name, name, name, 1, 1, 1, zero, zero, &
-            drot, zero, zero, n, 3, 1, 8, 1.0_dp, props, size(props))
+            drot, zero, zero, n, 3, 1, n_statev, 1.0_dp, props, size(props))
     end subroutine call_fric
 
     subroutine call_uinter(props, rdisp, drdisp, dtime, drot, statev, stress, stiffness, answer, &
@@ -66,7 +68,7 @@ contains
             answer%dissipated(1), answer%dissipated(2), answer%dissipated(3), &
             answer%dissipated(4), answer%pnewdt, rdisp, drdisp, zero, zero, zero, zero, zero, &
             dtime, 0.0_dp, name, name, name, props, zero, zero, drot, 1.0_dp, 1.0_dp, 1, &
-            size(rdisp), 8, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, answer%state, &
+            size(rdisp), n_statev, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, answer%state, &
             answer%severe, 0)
     end subroutine call_uinter
 
@@ -89,7 +91,7 @@ contains
         end if
         call umat(stress, statev, ddsdde, answer%sse, answer%spd, scd, rpl, zero, zero, zero, &
             zero, dstran, zero, dtime, 0.0_dp, 0.0_dp, zero, zero, name, ndi, nshr, ndi + nshr, &
-            8, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, gradient, 1, 1, 1, 1, &
+            n_statev, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, gradient, 1, 1, 1, 1, &
             step, 1)
     end subroutine call_umat
 
