@@ -1,5 +1,5 @@
 !> stickslip-fault: the fault engine, which `stickslip fault` runs. A program of its own, so that
-!> nothing else depends on FFTW, MPI or HDF5.
+!> nothing else depends on FFTW, MPI or NetCDF.
 program stickslip_fault
     use, intrinsic :: iso_fortran_env, only : error_unit
     use fault_picture, only : draw_fault
@@ -7,7 +7,8 @@ program stickslip_fault
     use fault_run, only : run_fault
     use fault_settings, only : fault_plan
     use namelist_input, only : namelist_file, read_namelist_file
-    use platform, only : exit_program, hold_output, make_directory, watch_for_interrupts
+    use netcdf_table, only : read_netcdf_table
+    use platform, only : exit_program, hold_output, make_directory, report, watch_for_interrupts
     use processes, only : lacks_mpi, team
     !$ use omp_lib, only : omp_set_num_threads
     implicit none
@@ -37,8 +38,13 @@ program stickslip_fault
     if (len(problem) > 0) then
         problem = 'stickslip: ' // input // ': ' // problem // new_line('a')
     else
-        call read_fault_plan(file, plan)
+        call read_fault_plan(file, plan, read_netcdf_table)
         problem = file%describe_faults()
+    end if
+    if (len(problem) == 0 .and. argument(4) == 'check') then
+        write (report, '(2a, i0, a, i0, a)') input, ': valid, ', plan%nx, ' x ', plan%nz, &
+            ' cells, for stickslip fault'
+        call finish(exit_done)
     end if
     if (len(problem) == 0) then
         if (.not. make_directory(directory)) problem = &

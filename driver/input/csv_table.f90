@@ -17,7 +17,7 @@ module csv_table
     implicit none
     private
 
-    public :: column_request, line_text, read_table, table
+    public :: column_request, line_text, read_table, table, table_reader
 
     real(dp), parameter, public :: largest = 1.0e100_dp   !! number that is taken
     integer, parameter :: most_faults = 20
@@ -66,6 +66,17 @@ module csv_table
         integer, allocatable :: first(:), last(:)     !! characters; room for `n` or more
         logical :: sound = .true.                     !! all quotes are closed
     end type line_cells
+
+    abstract interface
+        !> What reads tables of another kind, as `read_table` does.
+        subroutine table_reader(path, requests, read_in)
+            import :: column_request, table
+            implicit none
+            character(len=*), intent(in) :: path
+            type(column_request), intent(in) :: requests(:)
+            type(table), intent(out) :: read_in
+        end subroutine table_reader
+    end interface
 
 contains
 

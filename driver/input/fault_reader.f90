@@ -7,6 +7,7 @@
 module fault_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : mix
+    use csv_table, only : table_reader
     use fault_settings, only : fault_plan
     use friction_mod, only : friction_facts
     use input_kind, only : refuse_other_verb
@@ -27,17 +28,18 @@ module fault_reader
 contains
 
     !> Takes the plan from a file; every fault is left in `file%faults`.
-    subroutine read_fault_plan(file, plan)
+    subroutine read_fault_plan(file, plan, read_netcdf)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(out) :: plan
+        procedure(table_reader), optional :: read_netcdf   !! what reads NetCDF files, if anything
         logical :: refused
 
         call refuse_other_verb('fault', file, refused)
         if (refused) return
         call file%require_groups(['fault   ', 'friction', 'time    '])
         call read_surroundings(file, plan)
-        call read_constants(file, plan)
-        call read_initial(file, plan)
+        call read_constants(file, plan, read_netcdf)
+        call read_initial(file, plan, read_netcdf)
         call read_times(file, plan)
         call read_output(file, plan)
         call read_units(file, plan%units)
@@ -77,15 +79,16 @@ contains
     ! ---- friction ----------------------------------------------------------------------------
 
     !> Constants of friction and normal traction, at all nodes that any of them has.
-    subroutine read_constants(file, plan)
+    subroutine read_constants(file, plan, read_netcdf)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(inout) :: plan
+        procedure(table_reader), optional :: read_netcdf
         type(profile), allocatable :: profiles(:)
         real(dp), allocatable :: x(:), z(:), props(:)
         real(dp) :: normal
         integer :: faults_before, i, k
 
-        call take_profiles(file, group, axes, profiles)
+        call take_profiles(file, group, axes, profiles, read_netcdf)
         faults_before = size(file%faults)
         call add_springs(file, plan)
         call join_nodes(profiles, x, z)
@@ -175,9 +178,10 @@ contains
 
     ! ---- the rest ----------------------------------------------------------------------------
 
-    subroutine read_initial(file, plan)
+    subroutine read_initial(file, plan, read_netcdf)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(inout) :: plan
+        procedure(table_reader), optional :: read_netcdf
         character(len=:), allocatable :: how
         logical :: sound
 
@@ -192,9 +196,10 @@ contains
             call file%require(group, 'initial_file')
             if (plan%rate_state) then
                 call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
-                    plan%initial, sound)
+                    plan%initial, sound, read_netcdf)
             else
-                call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, sound)
+                call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, &
+                    sound, read_netcdf)
             end if
             if (.not. sound) return
             if (any(plan%initial%values(1, :, :) < 0.0_dp)) call file%reject(group, &

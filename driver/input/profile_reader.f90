@@ -1,15 +1,19 @@
 !> Quantities that differ from place to place: where the input has '@file.csv' in place of a number,
 !> the file has it at nodes, in a column of the key's name beside the columns of the coordinates.
+!> '@file.nc' is a NetCDF file, with variables in place of columns; only who has that library reads
+!> it.
 module profile_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use csv_table, only : column_request, csv => table, read_table
+    use csv_table, only : column_request, csv => table, read_table, table_reader
     use grid_map, only : map_on_grid, nodes_up_to
     use namelist_input, only : namelist_file
     use namelist_parser, only : value_token
+    use printable_text, only : lower
     implicit none
     private
 
-    public :: joined, names_profile, number_text, profile, put_number, read_map, take_profiles
+    public :: joined, names_netcdf, names_profile, number_text, profile, put_number, read_map, &
+        take_profiles
 
     !> A quantity that a file gives at nodes.
     type :: profile
@@ -33,11 +37,12 @@ contains
 
     !> Reads the files that keys of &friction name, and that the normal traction in another group
     !> does. Every fault is left in `file%faults`.
-    subroutine take_profiles(file, group, axes, profiles)
+    subroutine take_profiles(file, group, axes, profiles, read_netcdf)
         type(namelist_file), intent(inout) :: file
         character(len=*), intent(in) :: group     !! that has the key normal_traction
         character(len=*), intent(in) :: axes(2)   !! see `read_map`
         type(profile), allocatable, intent(out) :: profiles(:)
+        procedure(table_reader), optional :: read_netcdf
         type(profile) :: this
         integer :: i
         logical :: sound
@@ -47,7 +52,8 @@ contains
             if (.not. names_profile(file, i, group)) cycle
             this%group = file%entries(i)%group
             this%key = file%entries(i)%key
-            call read_map(file, this%group, this%key, axes, [this%key], this%map, sound)
+            call read_map(file, this%group, this%key, axes, [this%key], this%map, sound, &
+                read_netcdf)
             if (sound) profiles = [profiles, this]
             file%entries(i)%faulty = .not. sound
         end do
@@ -75,6 +81,28 @@ contains
         yes = .false.
         if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
     end function names_file
+
+    !> Does the input name a NetCDF file anywhere?
+    pure function names_netcdf(file) result(yes)
+        type(namelist_file), intent(in) :: file
+        logical :: yes
+        integer :: i
+
+        yes = .false.
+        do i = 1, size(file%entries)
+            if (size(file%entries(i)%values) /= 1) cycle
+            associate (value => file%entries(i)%values(1))
+                yes = yes .or. value%quoted .and. is_netcdf(value%text)
+            end associate
+        end do
+    end function names_netcdf
+
+    pure function is_netcdf(name) result(yes)
+        character(len=*), intent(in) :: name
+        logical :: yes
+
+        yes = lower(name(max(1, len(name) - 2):)) == '.nc'
+    end function is_netcdf
 
     !> A number takes the place of the name of a file.
     subroutine put_number(file, group, key, number)
@@ -112,7 +140,7 @@ contains
     end function joined
 
     !> Reads the file that a key names: columns of the axes, in full grid, and `names`.
-    subroutine read_map(file, group, key, axes, names, map, sound)
+    subroutine read_map(file, group, key, axes, names, map, sound, read_netcdf)
         type(namelist_file), intent(inout) :: file
         character(len=*), intent(in) :: group, key
         character(len=*), intent(in) :: axes(2)    !! columns of the coordinates: one that may be
@@ -120,11 +148,12 @@ contains
         character(len=*), intent(in) :: names(:)
         type(map_on_grid), intent(out) :: map
         logical, intent(out) :: sound
+        procedure(table_reader), optional :: read_netcdf
         type(csv) :: read_in
         integer :: faults_before, j
 
         faults_before = size(file%faults)
-        call read_columns(file, group, key, axes, names, read_in)
+        call read_columns(file, group, key, axes, names, read_in, read_netcdf)
         sound = size(file%faults) == faults_before .and. allocated(read_in%values)
         if (.not. sound) return
         map%x = nodes_in(read_in, axes(1))
@@ -148,12 +177,13 @@ contains
         if (sound) call fill_map(read_in, axes, names, map)
     end subroutine read_map
 
-    subroutine read_columns(file, group, key, axes, names, read_in)
+    subroutine read_columns(file, group, key, axes, names, read_in, read_netcdf)
         type(namelist_file), intent(inout) :: file
         character(len=*), intent(in) :: group, key
         character(len=*), intent(in) :: axes(2)
         character(len=*), intent(in) :: names(:)
         type(csv), intent(out) :: read_in
+        procedure(table_reader), optional :: read_netcdf
         type(column_request) :: requests(size(names) + 2)
         character(len=:), allocatable :: name
         integer :: first, i
@@ -171,7 +201,14 @@ contains
             requests(2 + i)%name = trim(names(i))
         end do
         first = merge(2, 1, axes(1) == '')
-        call read_table(file%beside(name), requests(first:), read_in)
+        if (.not. is_netcdf(name)) then
+            call read_table(file%beside(name), requests(first:), read_in)
+        else if (present(read_netcdf)) then
+            call read_netcdf(file%beside(name), requests(first:), read_in)
+        else
+            call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
+            return
+        end if
         do i = 1, size(read_in%faults)
             call file%reject(group, key, read_in%faults(i)%text)
         end do

@@ -3,9 +3,11 @@ module check
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use fault_reader, only : read_fault_plan
     use fault_settings, only : fault_plan
+    use fault_study, only : check_by_engine
     use input_kind, only : verb_of
     use namelist_input, only : namelist_file
     use platform, only : report
+    use profile_reader, only : names_netcdf
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
     use run_reader, only : read_settings
@@ -49,6 +51,7 @@ contains
             if (has_faults(file)) return
             write (extent, '(i0, a)') size(plan%runs), ' combinations'
         case ('fault')
+            if (names_netcdf(file)) call check_by_engine(input)
             call read_fault_plan(file, plane)
             if (has_faults(file)) return
             write (extent, '(i0, a, i0, a)') plane%nx, ' x ', plane%nz, ' cells'

@@ -7,9 +7,20 @@ module fault_study
     implicit none
     private
 
-    public :: run_fault_engine
+    public :: check_by_engine, run_fault_engine
 
 contains
+
+    !> Has the engine check an input with files that it alone reads. Returns only if there is none.
+    subroutine check_by_engine(input)
+        character(len=*), intent(in) :: input
+        character(len=max(len(input), 5)) :: arguments(4)
+
+        arguments = ''
+        arguments(1) = input
+        arguments(4) = 'check'
+        call replace_program(program_beside('stickslip-fault'), arguments)
+    end subroutine check_by_engine
 
     !> Returns only if there is no engine.
     subroutine run_fault_engine(wanted, exit_status)

@@ -411,6 +411,72 @@ class Input(FaultTest):
             '0.032', '0.08'))).stderr)
 
 
+class NetCDF(FaultTest):
+    """Profiles as NetCDF files, made by the library's own ncgen."""
+    VALUES = {(x, z): 0.007 + 1e-4 * i for i, (x, z) in enumerate((x, z) for x in (-30e3, 0, 30e3) for z in (0, 15e3, 40e3))}
+    TEXT = PLANE.replace('a = 0.007', "a = '@a.csv'")
+
+    def setUp(self):
+        super().setUp()
+        if shutil.which('ncgen') is None:
+            self.skipTest('no ncgen (Debian: netcdf-bin)')
+        self.make('a', 'dimensions: z = 2; variables: double z(z); data: z = 0, 1;')
+        told = self.run_fault(self.write(SMALL.replace('@a.csv', '@a.nc')), expect=2).stderr
+        if 'built without NetCDF' in told:
+            self.skipTest('built without NetCDF, as it says')
+
+    def make(self, stem, text, kind='nc3'):
+        (self.place / 'text.cdl').write_text(f'netcdf {stem} {{ {text} }}')
+        subprocess.run(['ncgen', '-k', kind, '-o', f'{stem}.nc', 'text.cdl'], cwd=self.place, check=True)
+
+    def test_the_same_numbers_give_the_same_files_as_a_table(self):
+        places = sorted(self.VALUES)
+        (self.place / 'a.csv').write_text('x,z,a\n' + ''.join(f'{x},{z},{self.VALUES[x, z]!r}\n' for x, z in places))
+        self.run_fault(self.write(self.TEXT), '--quiet', '--output', 'table')
+        xs, zs = sorted({x for x, _ in places}), sorted({z for _, z in places}, reverse=True)
+
+        def listed(numbers):
+            return ', '.join(map(repr, numbers)) + '; '
+
+        axes = f'x = {listed(xs)} z = {listed(zs)} '
+        by_rows = listed(self.VALUES[x, z] for z in zs for x in xs)
+        by_columns = listed(self.VALUES[x, z] for x in xs for z in zs)
+        nodes = f'x = {listed(x for x, _ in places)} z = {listed(z for _, z in places)} a = {listed(self.VALUES[p] for p in places)}'
+        grid = 'dimensions: time = 1; x = 3; z = 3; variables: double x(x); double z(z); double a'
+        for kind, text in (('nc3', f'{grid}(z, x); data: {axes} a = {by_rows}'), ('nc4', f'{grid}(x, z); data: {axes} a = {by_columns}'),
+                           ('nc6', f'{grid}(time, z, x); data: {axes} a = {by_rows}'),
+                           ('nc7', f'dimensions: n = 9; variables: double x(n); double z(n); double a(n); data: {nodes}')):
+            self.make('a', text, kind)
+            self.run_fault(self.write(self.TEXT.replace('a.csv', 'a.nc')), '--quiet', '--output', kind)
+            self.assert_same_files('table', kind)
+        whole = [round(1e4 * self.VALUES[x, z]) for z in zs for x in xs]   # packed as CF has it; 1e-4 is not exact
+        self.make('a', f'{grid.replace("double a", "short a")}(z, x); a:scale_factor = 1e-4; a:add_offset = 0.; data: {axes} a = {listed(whole)}')
+        self.run_fault(self.write(self.TEXT.replace('a.csv', 'a.nc')), '--quiet', '--output', 'packed')
+        last = {name: list(self.rows(f'{name}/case_station_1.csv').values())[-1] for name in ('table', 'packed')}
+        self.assertAlmostEqual(float(last['packed']['slip']), float(last['table']['slip']), delta=1e-12)
+
+    def test_what_does_not_fit_is_told_by_both_verbs(self):
+        for text, told in (('dimensions: z = 3; variables: double z(z); double a(z); data: z = 0, 1, 2; a = 1, _, NaN;',
+                            "variable 'a' has no number at 2 of its places, first at number 2"),
+                           ('dimensions: z = 3; variables: double z(z); char a(z); data: z = 0, 1, 2;', "variable 'a' holds no numbers"),
+                           ('dimensions: z = 3; variables: double z(z); data: z = 0, 1, 2;', "its file has no column 'a'"),
+                           ('dimensions: z = 3; variables: double a(z); data: a = 0, 1, 2;', "its file has no column 'z'"),
+                           ('dimensions: z = 2; y = 2; variables: double z(z); double a(y); data: z = 0, 1; a = 1, 2;', 'each node of a grid once'),
+                           ('dimensions: z = 2; y = 2; x = 2; variables: double z(z); double a(y, x); data: z = 0, 1;', '3 dimensions'),
+                           ('dimensions: z = 2; variables: double z(z); double a(z); a:scale_factor = -1.; data: z = 0, 1; a = 1, 2;',
+                            'a = -1.0')):
+            self.make('a', text)
+            name = self.write(SMALL.replace('@a.csv', '@a.nc'))
+            done = self.run_fault(name, expect=2)
+            self.assertIn(told, done.stderr)
+            checked = subprocess.run([PROGRAM, 'check', name], cwd=self.place, capture_output=True, text=True)
+            self.assertEqual((checked.returncode, checked.stderr), (2, done.stderr))
+        (self.place / 'a.nc').write_text(A)
+        self.assertIn('cannot be read as NetCDF', self.run_fault(name, expect=2).stderr)
+        (self.place / 'a.nc').unlink()
+        self.assertIn('no such file', self.run_fault(name, expect=2).stderr)
+
+
 class Absent(unittest.TestCase):
     def test_without_the_engine_the_program_says_what_to_install(self):
         with tempfile.TemporaryDirectory() as place:
@@ -421,6 +487,10 @@ class Absent(unittest.TestCase):
             self.assertIn('libfftw3-dev', done.stderr)
             checked = subprocess.run([alone, 'check', INPUTS / 'fault_bp1.nml'], capture_output=True, text=True)
             self.assertEqual(checked.returncode, 0, checked.stderr)
+            (pathlib.Path(place) / 'case.nml').write_text(SMALL.replace('a.csv', 'a.nc'))
+            checked = subprocess.run([alone, 'check', 'case.nml'], cwd=place, capture_output=True, text=True)
+            self.assertEqual(checked.returncode, 2)
+            self.assertIn("a = '@a.nc': is a NetCDF file, which the fault engine alone reads", checked.stderr)
 
 
 if __name__ == '__main__':
