@@ -181,10 +181,11 @@ contains
     !> The balance by brackets, where Newton's method does not settle: blocks that are no neighbours
     !> of one another each go to their own first balance while the others stand still, in turns.
     !>
-    !> Where the forces pull all blocks the same way none goes beyond the first balance of the whole,
-    !> since a block that advances pulls its neighbours along; and every turn lowers the potential of
-    !> the step, for friction in a step depends on the block's own displacement alone. With stiff
-    !> couplings the turns approach slowly: Newton's method goes on from where they have come to.
+    !> Where the forces pull all blocks the same way none goes beyond the first balance of the
+    !> whole, since a block that advances pulls its neighbours along; and every turn lowers the
+    !> potential of the step, for friction in a step depends on the block's own displacement alone.
+    !> With stiff couplings the turns approach slowly: Newton's method goes on from where they have
+    !> come to.
     subroutine search(self, system, old, new, report, balanced)
         class(newmark), intent(inout) :: self
         type(slider), intent(in) :: system
@@ -215,9 +216,10 @@ contains
         end do
     end subroutine search
 
-    !> Takes every second block from `first` to `last` to its own balance, the first one in the sense
-    !> in which the forces pull it. It cannot be closer than the residual over the largest stiffness
-    !> there is, and there is one, because the springs bound how far friction lets a block go.
+    !> Takes every second block from `first` to `last` to its own balance, the first one in the
+    !> sense in which the forces pull it. It cannot be closer than the residual over the largest
+    !> stiffness there is, and there is one, because the springs bound how far friction lets a block
+    !> go.
     subroutine bracket(self, system, old, new, report, first, last, balanced)
         class(newmark), intent(inout) :: self
         type(slider), intent(in) :: system
