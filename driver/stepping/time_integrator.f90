@@ -230,17 +230,20 @@ contains
         logical, intent(out) :: balanced           !! each of these blocks
         integer, parameter :: most_evaluations = 400
         type(root_bracket) :: brackets(first:last)
+        real(dp) :: stiffest   !! contact spring [F/L^3]
         logical :: settled
         integer :: i, evaluation
 
         balanced = .true.
         if (report%status < 0) return
+        stiffest = system%props(prop_alpha_t)
+        if (allocated(system%constants)) stiffest = maxval(system%constants(:, prop_alpha_t))
         associate (w => self%work)
             call fill(self, system)
             do i = first, last, 2
                 brackets(i) = root_bracket(sense=sign(1.0_dp, w%residual(i)), low=w%dx(i), &
                     stride=w%residual(i) / (w%matrix%diagonal(i) + (1.0_dp - self%alpha_f) &
-                    * system%area * system%props(prop_alpha_t)))
+                    * system%area * stiffest))
             end do
             do evaluation = 1, most_evaluations
                 balanced = .true.
