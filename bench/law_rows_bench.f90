@@ -7,7 +7,7 @@ program law_rows_bench
     use omp_lib, only : omp_set_num_threads
     implicit none
 
-    integer, parameter :: sizes(3) = [1000, 10000, 100000], most_constants = 14
+    integer, parameter :: sizes(3) = [1000, 10000, 100000], most_constants = 16
     integer, parameter :: numbers = 23   !! of a point, read or written
     integer, parameter :: few = 20000    !! points one by one
     !> Ways to update: a batch with one set of constants or with each point's own, points one after
@@ -17,14 +17,14 @@ program law_rows_bench
 
     !> A law with its option, and points that have been sliding under it.
     type :: row
-        character(len=20) :: name
+        character(len=21) :: name
         integer :: n_props
         real(dp) :: props(most_constants)
         real(dp), allocatable :: du(:, :), statev(:, :), own(:, :)
         real(dp) :: lowest(ways) = huge(1.0_dp)   !! processor time of each way [s]
     end type row
 
-    type(row) :: rows(13)
+    type(row) :: rows(19)
     !> Results, component after component and point after point: allocated once for a size, so that
     !> no time is spent on fresh memory.
     real(dp), allocatable :: statev(:, :), traction(:, :), tangent(:, :, :)
@@ -66,6 +66,14 @@ contains
         rows(11) = row_of('rate-state, slip law', [creep, 1.0_dp])
         rows(12) = row_of('exact rate, capped', [sub, 0.4_dp, 1.0_dp, 0.0_dp, 8.0_dp])
         rows(13) = row_of('rate-state, capped', [creep, 0.0_dp, 1.0_dp, 16.0_dp])
+        rows(14) = row_of('slip-weakening, heals', [6.0_dp, alpha, alpha, 0.4_dp, 0.2_dp, 0.05_dp, &
+            10.0_dp])
+        rows(15) = row_of('flash heating', [7.0_dp, creep(2:8), 0.2_dp, 0.1_dp])
+        rows(16) = row_of('Linker-Dieterich', [8.0_dp, creep(2:8), 0.1_dp])
+        rows(17) = row_of('same, slip law', [8.0_dp, creep(2:8), 0.1_dp, 1.0_dp])
+        rows(18) = row_of('cohesion', [sub, 0.4_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 1.0_dp])
+        rows(19) = row_of('damper', [sub, 0.4_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, &
+            0.1_dp])
     end subroutine list_rows
 
     function row_of(name, props) result(this)
@@ -92,17 +100,17 @@ contains
         do j = 1, n
             call random_number(u)
             pressure = 1.0_dp + 99.0_dp * u(1)
-            mu = merge(0.4_dp, 0.3_dp, law == 3 .or. law == 5)
+            mu = merge(0.4_dp, 0.3_dp, law == 3 .or. law == 5 .or. law == 6)
             internal = 0.0_dp
             if (law == 1) then
                 mu = 0.2_dp + 0.2_dp * u(2)
                 internal = 0.05_dp + 0.95_dp * u(3)
                 traction = internal * mu * pressure
-            else if (law == 4) then
+            else if (law == 4 .or. law >= 7) then
                 internal = 10.0_dp**(2.0_dp * u(3))
                 traction = (0.28_dp + 0.04_dp * u(2)) * pressure
             else
-                if (law == 5) internal = 0.05_dp * u(3)
+                if (law == 5 .or. law == 6) internal = 0.05_dp * u(3)
                 traction = (mu - 4.0_dp * internal) * pressure * (1.0_dp - 1.0e-6_dp * u(2))
             end if
             if (this%n_props == 12) traction = min(traction, this%props(12))
@@ -202,7 +210,7 @@ contains
             // '      C order  scalar, ns'
         do i = 1, size(rows)
             associate (t => rows(i)%lowest)
-                print '(a20, f8.1, f10.2, f14.2, f15.2, f13.2, f12.1)', rows(i)%name, &
+                print '(a21, f7.1, f10.2, f14.2, f15.2, f13.2, f12.1)', rows(i)%name, &
                     t(alike) / n * 1.0e9_dp, t(alike) / copy, t(alike) / rows(1)%lowest(alike), &
                     t(varied) / t(alike), t(point_major) / t(alike), t(one_by_one) / n * 1.0e9_dp
             end associate

@@ -303,7 +303,7 @@ contains
         real(wp) :: statev_(lanes, statev_size)
         real(wp) :: traction_(lanes, this%ndir), tangent_(lanes, this%ndir, this%ndir)
         integer(c_int) :: more(lanes), n_left
-        integer :: count, used, j, k
+        integer :: count, used, pass, j, k
 
         count = int(last - first) + 1
         du_ = 0.0_wp
@@ -313,7 +313,7 @@ contains
         constants_(:, :used) = constants(:, :used)
         du_(:count, :) = du(first:last, :)
         statev_(:count, :) = statev(first:last, :statev_size)
-        do
+        do pass = 1, lanes
             do j = 1, lanes
                 if (left(j) == 0 .and. j <= count) cycle   ! else an open point harms nobody
                 constants_(j, :used) = this%plan%source%value(:used)
@@ -329,6 +329,7 @@ contains
             if (n_left == 0) exit
             left = max(left, more)
         end do
+        if (n_left > 0) left = 1_c_int
 
         ! Column by column: a point's components can be far apart.
         do k = 1, statev_size

@@ -8,23 +8,12 @@
 !> underflow.
 module friction_batch_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
-    use friction_coulomb_lanes, only : rest_coulomb, slide_coulomb
     use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &
-        c_mu_0, c_own, c_r_0, c_squeeze, lane_ageing, lane_cotangent, lane_coulomb, &
-        lane_exact_rate, lane_reciprocal, lane_slip_law, lane_static_kinetic, lane_subloading, &
-        lanes, least_ratio, n_constants, no_cap, rest_block, slide_block, unsure, verge, widest, &
-        with_cap, with_two_coefficients
-    use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state
-    use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &
-        state_slip_weakening
-    use friction_static_kinetic_lanes, only : rest_static_kinetic, slide_static_kinetic, &
-        state_static_kinetic
-    use friction_subloading_exact_lanes, only : exact_coefficients_after, rest_subloading_exact, &
-        slide_subloading_exact
-    use friction_subloading_general_lanes, only : slide_subloading_general, &
-        state_subloading_general
-    use friction_subloading_lanes, only : c_mu_k, c_mu_s, coefficients_after, rest_subloading, &
-        slide_subloading, state_subloading
+        c_mu_0, c_own, c_r_0, c_squeeze, lanes, least_ratio, n_constants, no_cap, rest_block, &
+        slide_block, unsure, verge, widest, with_cap, with_two_coefficients
+    use friction_law_lanes, only : counts_pressure_before, find_coefficients, follows_path, &
+        follows_rate, mobilises, rest_law, slide_law, state_of_law
+    use friction_subloading_lanes, only : c_mu_k, c_mu_s
     implicit none
     private
 
@@ -180,23 +169,10 @@ contains
         call check(task, du, statev, left, n_left)
         if (n_left > 0) return
         call load(task, constants, du, statev, trial, valid)
-        trial%follows = .false.
-        select case (task%kind)
-        case (lane_subloading, lane_cotangent, lane_reciprocal)
-            call rest_subloading(constants, task%dt, trial%rest)
-        case (lane_exact_rate)
-            trial%follows = .true.
-            call rest_subloading_exact(constants, task%dt, trial%rest)
-            trial%start = -1.0_wp
-        case (lane_coulomb)
-            call rest_coulomb(constants, trial%rest)
-        case (lane_static_kinetic)
-            call rest_static_kinetic(constants, trial%rest)
-        case (lane_ageing, lane_slip_law)
-            call rest_rate_state(task%kind == lane_ageing, task%dt, trial%rest)
-        case default
-            call rest_slip_weakening(constants, trial%rest)
-        end select
+        if (counts_pressure_before(task)) call find_pressure_before(task, constants, statev, trial)
+        call rest_law(task, constants, trial%rest)
+        trial%follows = follows_path(task)
+        if (trial%follows) trial%start = -1.0_wp
         if (task%cohesion > 0.0_wp) call add_cohesion(task, du, statev, trial%rest, valid)
         if (trial%follows .and. task%viscous <= 0.0_wp) then
             call leave_reloading(task, constants, statev, trial, valid)
@@ -217,22 +193,18 @@ contains
         end do
     end subroutine find_trial
 
-    !> Do the lanes of a law carry a share of their strength (`mobilises_cohesion` of the law)?
-    pure function mobilises(task)
+    !> Contact pressures at the start of the increment.
+    subroutine find_pressure_before(task, constants, statev, trial)
         type(block_task), intent(in) :: task
-        logical :: mobilises
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: statev(task%stride, 8)
+        type(trial_block), intent(inout) :: trial
+        integer :: i
 
-        mobilises = task%kind == lane_subloading .or. task%kind == lane_exact_rate .or. task%kind &
-            == lane_cotangent .or. task%kind == lane_reciprocal
-    end function mobilises
-
-    !> Does the coefficient in the state follow from the slip rate?
-    pure function follows_rate(task)
-        type(block_task), intent(in) :: task
-        logical :: follows_rate
-
-        follows_rate = task%kind == lane_ageing .or. task%kind == lane_slip_law
-    end function follows_rate
+        do i = 1, lanes
+            trial%rest%before(i) = max(0.0_wp, -constants(i, c_alpha_n) * statev(i, 2))
+        end do
+    end subroutine find_pressure_before
 
     !> Strengths with cohesion; contacts that just touch are left.
     pure subroutine add_cohesion(task, du, statev, rest, valid)
@@ -451,6 +423,11 @@ contains
                 slid%stiffness(i) = trial%stiffness(i)
             end if
         end do
+        if (counts_pressure_before(task)) then
+            do i = 1, lanes
+                slid%before(i) = trial%rest%before(merge(i, first, trial%slides(i) > 0))
+            end do
+        end if
         call slide(task, constants, own_strength, slid)
         do i = 1, lanes
             if (slid%left(i) > 0.0_wp) left(i) = trial%slides(i)
@@ -486,6 +463,9 @@ contains
         end do
         if (iand(task%options, with_cap) > 0) then
             call pack_column(packed%n, place, trial%rest%strength, own_strength)
+        end if
+        if (counts_pressure_before(task)) then
+            call pack_column(packed%n, place, trial%rest%before, packed%before)
         end if
         if (task%n_own > 0) then
             do k = c_own, c_own + task%n_own - 1
@@ -561,9 +541,7 @@ contains
             if (held(i) > 0.0_wp) block%trial(i) = 1.01_wp * own_strength(i)   ! of no account
         end do
         call slide_by_law(task, constants, block)
-        ! Round-off decides whether the cap holds; or it is all of a slip whose logarithm counts.
-        near = 4.0_wp * verge
-        if (follows_rate(task)) near = 1.0e-3_wp
+        near = 4.0_wp * verge   ! round-off decides whether the cap holds
         do i = 1, block%n
             block%trial(i) = trial(i)
             if (block%resistance(i) > constants(i, c_cap)) held(i) = 1.0_wp
@@ -582,7 +560,7 @@ contains
         type(slide_block), intent(inout) :: block
 
         if (.not. task%cohesion > 0.0_wp) then
-            call slide_bare(task, constants, block)
+            call slide_law(task, constants, block)
         else if (mobilises(task)) then
             call slide_mobilising(task, constants, block)
         else
@@ -603,7 +581,7 @@ contains
             trial(i) = block%trial(i)
             block%trial(i) = trial(i) - task%cohesion
         end do
-        call slide_bare(task, constants, block)
+        call slide_law(task, constants, block)
         do i = 1, block%n
             ! the state tells the law's part, of which a difference has too few digits
             if (follows_rate(task) .and. block%trial(i) < few_digits * trial(i)) then
@@ -637,44 +615,17 @@ contains
             shifted(i, c_mu_k) = (constants(i, c_mu_k) * pressure(i) + task%cohesion) &
                 / block%pressure(i)
         end do
-        call slide_bare(task, shifted, block)
+        call slide_law(task, shifted, block)
         do i = 1, block%n
             block%pressure(i) = pressure(i)
             block%mu(i) = mu(i)
             block%mu_rest(i) = mu_rest(i)
         end do
-        if (task%kind == lane_exact_rate) then
-            call exact_coefficients_after(constants, task%dt, block)
-        else
-            call coefficients_after(constants, task%dt, block)
-        end if
+        call find_coefficients(task, constants, block)
         do i = 1, block%n
             block%d_pressure(i) = block%r_end(i) * block%mu_end(i)
         end do
     end subroutine slide_mobilising
-
-    subroutine slide_bare(task, constants, block)
-        type(block_task), intent(in) :: task
-        real(wp), intent(in) :: constants(lanes, n_constants)
-        type(slide_block), intent(inout) :: block
-
-        select case (task%kind)
-        case (lane_subloading)
-            call slide_subloading(constants, task%dt, block)
-        case (lane_exact_rate)
-            call slide_subloading_exact(constants, task%dt, block)
-        case (lane_cotangent, lane_reciprocal)
-            call slide_subloading_general(constants, task%kind == lane_cotangent, task%dt, block)
-        case (lane_coulomb)
-            call slide_coulomb(constants, block)
-        case (lane_static_kinetic)
-            call slide_static_kinetic(constants, task%dt, block)
-        case (lane_ageing, lane_slip_law)
-            call slide_rate_state(constants, task%kind == lane_ageing, task%dt, block)
-        case default
-            call slide_slip_weakening(constants, block)
-        end select
-    end subroutine slide_bare
 
     !> Where the cap holds: the law's variables follow the slip.
     subroutine hold_at_cap(task, constants, held, block)
@@ -686,28 +637,19 @@ contains
         integer :: i
 
         copy%n = block%n
+        if (counts_pressure_before(task)) copy%before(:block%n) = block%before(:block%n)
         do i = 1, block%n
             copy%slip(i) = block%slip(i)
+            copy%trial(i) = block%trial(i)
+            copy%stiffness(i) = block%stiffness(i)
+            copy%pressure(i) = block%pressure(i)
             copy%mu(i) = block%mu(i)
             copy%r(i) = block%r(i)
             copy%mu_end(i) = block%mu_end(i)   ! of a law without variables
             copy%r_end(i) = block%r_end(i)
             copy%left(i) = 0.0_wp
         end do
-        select case (task%kind)
-        case (lane_subloading)
-            call state_subloading(constants, task%dt, copy)
-        case (lane_exact_rate, lane_ageing, lane_slip_law)
-            copy%left = 1.0_wp   ! one by one
-        case (lane_cotangent, lane_reciprocal)
-            call state_subloading_general(constants, task%kind == lane_cotangent, task%dt, copy)
-        case (lane_coulomb)
-            continue   ! has no variables
-        case (lane_static_kinetic)
-            call state_static_kinetic(constants, task%dt, copy)
-        case default
-            call state_slip_weakening(constants, copy)
-        end select
+        call state_of_law(task, constants, copy)
         do i = 1, block%n
             if (held(i) > 0.0_wp) then
                 block%mu_end(i) = copy%mu_end(i)

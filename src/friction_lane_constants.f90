@@ -5,7 +5,8 @@ module friction_lane_constants
     use friction_coulomb_law, only : coulomb_law
     use friction_kinds, only : wp
     use friction_lane_block, only : c_alpha_n, c_alpha_t, c_cap, c_mu_0, c_own, c_r_0, c_squeeze, &
-        constants_source, lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, lane_none, &
+        constants_source, lane_ageing, lane_cotangent, lane_coulomb, lane_exact_rate, &
+        lane_flash_heating, lane_healing, lane_none, lane_pressed_ageing, lane_pressed_slip_law, &
         lane_reciprocal, lane_slip_law, lane_slip_weakening, lane_static_kinetic, &
         lane_subloading, lanes, n_constants, n_own, no_cap, with_cap, &
         with_two_coefficients
@@ -14,7 +15,10 @@ module friction_lane_constants
         law_storage, prop_alpha_n, prop_alpha_t, prop_law, surface_options
     use friction_law, only : law
     use friction_law_constants, only : constant_table, positive
+    use friction_flash_heating_law, only : flash_heating_law
+    use friction_linker_dieterich_law, only : linker_dieterich_law
     use friction_rate_state_law, only : rate_state_law, slipping
+    use friction_slip_weakening_healing_law, only : slip_weakening_healing_law
     use friction_slip_weakening_law, only : slip_weakening_law
     use friction_static_kinetic_law, only : static_kinetic_law
     use friction_subloading_exact_law, only : subloading_exact_law
@@ -38,6 +42,9 @@ module friction_lane_constants
 
     !> Constants that are not zero are of ordinary size, or lanes do not take them.
     real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
+    !> Of modules friction_rate_state_lanes and friction_rate_state_evolution.
+    real(wp), parameter :: least_direct = 1.0e-9_wp, least_evolution = 2.0_wp**(-6), &
+        most_pressing = 64.0_wp
 
 contains
 
@@ -102,7 +109,7 @@ contains
         column_of = 0
         do k = 1, table%n
             place = first_own_prop + k - 1
-            if (place > nprops) exit
+            if (place > nprops .and. (table%of(k)%whole .or. table%of(k)%default_from > 0)) exit
             if (table%of(k)%whole) then
                 call must_stay(place, props(place), plan)
                 cycle
@@ -113,7 +120,8 @@ contains
             end if
             column_of(k) = c_own + plan%source%n_own
             plan%source%n_own = plan%source%n_own + 1_c_int
-            plan%source%place(column_of(k)) = place
+            if (place <= nprops) plan%source%place(column_of(k)) = place
+            plan%source%value(column_of(k)) = table%of(k)%default
             plan%source%lower(column_of(k)) = table%of(k)%lower
             plan%source%upper(column_of(k)) = table%of(k)%upper
         end do
@@ -160,8 +168,19 @@ contains
         type is (coulomb_law); kind = lane_coulomb
         type is (static_kinetic_law); kind = lane_static_kinetic
         type is (rate_state_law)
-            kind = merge(lane_slip_law, lane_ageing, own%evolution == slipping)
+            if (own%a >= least_direct * max(own%b, own%f0)) then
+                kind = merge(lane_slip_law, lane_ageing, own%evolution == slipping)
+            end if
+        type is (linker_dieterich_law)
+            if (own%a >= least_direct * max(own%b, own%f0) .and. own%alpha < most_pressing &
+                * own%b) then
+                kind = merge(lane_pressed_slip_law, lane_pressed_ageing, own%evolution == slipping)
+            end if
+        type is (flash_heating_law)
+            if (own%a >= least_direct * max(own%b, own%f0) .and. own%b >= least_evolution &
+                * max(own%a, own%f0)) kind = lane_flash_heating
         type is (slip_weakening_law); kind = lane_slip_weakening
+        type is (slip_weakening_healing_law); kind = lane_healing
         end select
     end function kind_of
 

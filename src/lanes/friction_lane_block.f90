@@ -37,7 +37,8 @@ module friction_lane_block
     !> Laws with lanes.
     integer, parameter, public :: lane_none = 0, lane_subloading = 1, lane_exact_rate = 2, &
         lane_cotangent = 3, lane_reciprocal = 4, lane_coulomb = 5, lane_static_kinetic = 6, &
-        lane_ageing = 7, lane_slip_law = 8, lane_slip_weakening = 9
+        lane_ageing = 7, lane_slip_law = 8, lane_slip_weakening = 9, lane_healing = 10, &
+        lane_pressed_ageing = 11, lane_pressed_slip_law = 12, lane_flash_heating = 13
 
     !> Options of laws.
     integer(c_int), parameter, public :: with_cap = 1, with_two_coefficients = 2
@@ -72,6 +73,8 @@ module friction_lane_block
     type, public :: rest_block
         real(wp) :: traction(lanes)    !! in: carried elastically, 0 in an open contact [F/L^2]
         real(wp) :: pressure(lanes)    !! in: 0 in an open contact [F/L^2]
+        real(wp) :: before(lanes)      !! in, for laws that count it: the same at the start of the
+                                       !! increment [F/L^2]
         real(wp) :: mu(lanes), r(lanes)   !! in: at the start of the increment
         real(wp) :: mu_rest(lanes), r_rest(lanes)   !! out: at its end, if nothing slips
         real(wp) :: strength(lanes)    !! out: traction at which slip starts [F/L^2]
@@ -83,6 +86,8 @@ module friction_lane_block
         real(wp) :: trial(lanes)       !! in: tangential traction without slip [F/L^2]
         real(wp) :: stiffness(lanes)   !! in: tangential stiffness [F/L^3]
         real(wp) :: pressure(lanes)    !! in: > 0 [F/L^2]
+        real(wp) :: before(lanes)      !! in, for laws that count it: the same at the start of the
+                                       !! increment [F/L^2]
         real(wp) :: mu(lanes), r(lanes)   !! in: at the start of the increment
         real(wp) :: mu_rest(lanes)     !! in: at its end, if nothing slips
         real(wp) :: slip(lanes)        !! out [L]

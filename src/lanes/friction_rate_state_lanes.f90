@@ -1,221 +1,202 @@
-!> Rate-and-state friction of a block of points.
+!> Rate-and-state friction of a block of points, and its extensions.
 module friction_rate_state_lanes
     use, intrinsic :: iso_fortran_env, only : wp => real64
-    use friction_lane_block, only : c_own, lanes, n_constants, rest_block, slide_block
-    use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
-        may_vanish, ranges, slip_range, slipped_bounds, slipped_fall
-    use friction_rate_state_core, only : aged_slope, aged_state, asinh_of, decayed_part, far, &
-        mean_decay, slipped_slope, slope_of, state_exponent
+    use friction_lane_block, only : lane_ageing, lane_flash_heating, lane_pressed_ageing, &
+        lane_pressed_slip_law, lanes, n_constants, rest_block, slide_block
+    use friction_rate_state_core, only : asinh_of, decayed_part, far, mean_growth, slope_of, &
+        state_exponent
+    use friction_rate_state_evolution, only : c_a, c_alpha, c_b, c_f0, evolution, evolve, &
+        evolved, find_pressed, find_several, most_pressing, prepare_evolution
     implicit none
     private
 
-    public :: rest_rate_state, slide_rate_state
+    public :: rest_rate_state, slide_rate_state, state_rate_state
 
-    integer, parameter :: c_a = c_own, c_b = c_own + 1, c_d_c = c_own + 2, c_v0 = c_own + 3, &
-        c_f0 = c_own + 4
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
     real(wp), parameter :: least_theta = 1.0e-150_wp   !! taken [T]
+    real(wp), parameter :: ln_least_theta = -345.0_wp, ln_most_theta = 46.0_wp
     real(wp), parameter :: ln_least_slip = -200.0_wp   !! taken, slip over d_c
+    real(wp), parameter :: least_direct = 1.0e-9_wp    !! a, by b and f0, taken
+    !> b, by a and f0, taken with flash heating: with less, round-off of friction shows in theta.
+    real(wp), parameter :: least_evolution = 2.0_wp**(-6)
     real(wp), parameter :: small = 1.0e-8_wp      !! the error of a step's result is its square
     !> How far a point has come: searching, or to be evaluated once more; settled is 0.
     real(wp), parameter :: active = 1.0_wp, last = 0.5_wp
 
-    !> What the iteration needs of a block, and where it is.
+    !> Where the iteration is.
     type :: search
-        real(wp) :: u_0(lanes)         !! u of the core without slip and theta's change
-        real(wp) :: per_d_c(lanes), ln_d_c(lanes), b_over_a(lanes)
-        real(wp) :: ln_theta_n(lanes)  !! at the start of the increment
-        real(wp) :: z(lanes)           !! ln(slip)
-        real(wp) :: ln_theta(lanes)    !! at the end of the increment
+        type(evolved) :: at          !! the slip
+        real(wp) :: ln_theta(lanes)  !! of points that have settled
         real(wp) :: low(lanes), high(lanes)   !! the bracket of z
-        real(wp) :: several(lanes)     !! above 0 where several equilibria are possible
-        logical :: ages                !! ageing law, else slip law
-        real(wp) :: dt                 !! [T]
+        real(wp) :: u_0(lanes)       !! u of the core without slip and theta's change
     end type search
 
 contains
 
-    !> A surface without traction ages, or by the slip law stays as it is.
-    pure subroutine rest_rate_state(ages, dt, block)
-        logical, intent(in) :: ages
-        real(wp), intent(in) :: dt   !! [T]
+    !> A surface without traction ages, or by the slip law stays as it is; a change of the pressure
+    !> may change its state.
+    pure subroutine rest_rate_state(kind, constants, dt, block)
+        integer, intent(in) :: kind   !! of lanes
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: dt    !! [T]
         type(rest_block), intent(inout) :: block
-        real(wp) :: older
+        real(wp), dimension(lanes) :: pressed, left
+        real(wp) :: older, mean, fall
         integer :: i
 
         older = 0.0_wp
-        if (ages) older = dt
+        if (kind == lane_ageing .or. kind == lane_pressed_ageing) older = dt
         do i = 1, lanes
             block%mu_rest(i) = 0.0_wp
             block%r_rest(i) = block%r(i) + older
             block%strength(i) = 0.0_wp
-            block%valid(i) = min(block%mu(i), block%r(i) - least_theta)
+            block%valid(i) = min(block%mu(i), block%r(i) - least_theta, constants(i, c_a) &
+                - least_direct * max(constants(i, c_b), constants(i, c_f0)))
+        end do
+        if (kind == lane_flash_heating) then
+            do i = 1, lanes
+                block%valid(i) = min(block%valid(i), constants(i, c_b) - least_evolution &
+                    * max(constants(i, c_a), constants(i, c_f0)))
+            end do
+        end if
+        if (kind /= lane_pressed_ageing .and. kind /= lane_pressed_slip_law) return
+        call find_pressed(lanes, constants, block%before, block%pressure, pressed)
+        do i = 1, lanes
+            left(i) = exp(-pressed(i))
+        end do
+        do i = 1, lanes
+            call mean_growth(pressed(i), left(i), mean, fall)
+            block%r_rest(i) = block%r(i) * left(i) + older * mean
+            if (abs(pressed(i)) + constants(i, c_alpha) / constants(i, c_b) >= most_pressing) then
+                block%valid(i) = -1.0_wp
+            end if
         end do
     end subroutine rest_rate_state
 
     !> Newton's method in ln(slip), bracketed; a point that has settled stays where it is while
-    !> others go on.
-    pure subroutine slide_rate_state(constants, ages, dt, block)
+    !> others go on. Points at which several equilibria are possible are left.
+    pure subroutine slide_rate_state(kind, constants, dt, block)
+        integer, intent(in) :: kind   !! of lanes
         real(wp), intent(in) :: constants(lanes, n_constants)
-        logical, intent(in) :: ages
-        real(wp), intent(in) :: dt   !! > 0 [T]
+        real(wp), intent(in) :: dt    !! > 0 [T]
         type(slide_block), intent(inout) :: block
         integer, parameter :: max_iterations = 25
+        type(evolution) :: state
         type(search) :: now
-        real(wp), dimension(lanes) :: ln_theta, by_ln_slip, slip
         real(wp) :: still
         integer :: i, iteration
 
-        now%ages = ages
-        now%dt = dt
-        call begin(constants, block, now)
-        if (any(now%several(:block%n) > 0.0_wp)) call look_closer(constants, block, now)
-        call start(constants, block, now)
+        call prepare(kind, constants, dt, block, state, now)
+        call find_several(constants, block, state)
+        call start(constants, block, state, now)
         do i = 1, block%n
-            now%several(i) = max(now%several(i), now%low(i) + 1.0_wp - now%high(i))
-            block%left(i) = merge(0.0_wp, active, now%several(i) > 0.0_wp)
+            state%several(i) = max(state%several(i), now%low(i) + 1.0_wp - now%high(i))
+            block%left(i) = merge(0.0_wp, active, state%several(i) > 0.0_wp)
             block%slip(i) = block%trial(i) / block%stiffness(i)   ! numbers for those that are left
             block%mu_end(i) = 0.0_wp
             block%d_slip(i) = 0.0_wp
-            now%ln_theta(i) = now%ln_theta_n(i)
+            block%d_pressure(i) = 0.0_wp
+            now%ln_theta(i) = state%ln_theta_n(i)
         end do
         do iteration = 1, max_iterations
             do i = 1, block%n
-                slip(i) = exp(now%z(i))
+                now%at%slip(i) = exp(now%at%z(i))
             end do
-            call evolve(block, now, slip, ln_theta, by_ln_slip)
-            call step(constants, slip, ln_theta, by_ln_slip, block, now, still)
+            call evolve(block, state, now%at)
+            call step(constants, state, block, now, still)
             if (still <= 0.0_wp) exit
         end do
         do i = 1, block%n
-            block%r_end(i) = exp(now%ln_theta(i))
+            block%r_end(i) = exp(min(now%ln_theta(i), ln_most_theta))
         end do
         do i = 1, block%n
             block%d_slip(i) = block%d_slip(i) / block%slip(i)
-            block%d_pressure(i) = block%mu_end(i)
+            block%d_pressure(i) = block%mu_end(i) + block%d_pressure(i)
             block%resistance(i) = block%mu_end(i) * block%pressure(i)
-            block%left(i) = max(block%left(i), now%several(i))
+            block%left(i) = max(block%left(i), state%several(i), ln_least_theta &
+                - now%ln_theta(i), now%ln_theta(i) - ln_most_theta)
         end do
     end subroutine slide_rate_state
 
-    !> Prepares the search; points at which several equilibria are possible are left.
-    pure subroutine begin(constants, block, now)
+    !> mu and theta after a given slip.
+    pure subroutine state_rate_state(kind, constants, dt, block)
+        integer, intent(in) :: kind   !! of lanes
         real(wp), intent(in) :: constants(lanes, n_constants)
-        type(slide_block), intent(in) :: block
-        type(search), intent(inout) :: now
-        real(wp), dimension(lanes) :: ln_v0, left, x
-        real(wp) :: ln_dt, fastest, aged, older, pull
+        real(wp), intent(in) :: dt    !! > 0 [T]
+        type(slide_block), intent(inout) :: block   !! in: slip and load; out: mu_end,
+                                                    !! r_end, left
+        type(evolution) :: state
+        real(wp), parameter :: most_digits = 5.0e-3_wp
+        type(evolved) :: after
+        real(wp), dimension(lanes) :: u, e_u
+        real(wp) :: steepness
         integer :: i
 
-        older = merge(1.0_wp, 0.0_wp, now%ages)
-        ln_dt = log(now%dt)
+        call prepare_evolution(kind, constants, dt, block, state)
         do i = 1, block%n
-            now%ln_d_c(i) = log(constants(i, c_d_c))
+            after%slip(i) = block%slip(i)
+            after%z(i) = log(max(block%slip(i), tiny(u)))
+        end do
+        call find_exponents(constants, block%n, state)
+        call evolve(block, state, after)
+        do i = 1, block%n
+            u(i) = u_of(state%x_n(i), after%z(i), state%b_over_a(i), after%ln_theta(i) &
+                - state%ln_theta_n(i))
+            e_u(i) = exp(min(u(i), far))
         end do
         do i = 1, block%n
-            ln_v0(i) = log(constants(i, c_v0))
+            block%mu_end(i) = constants(i, c_a) * asinh_of(u(i), e_u(i))
+            block%r_end(i) = exp(min(after%ln_theta(i), ln_most_theta))
+            block%left(i) = max(0.0_wp, ln_least_theta - after%ln_theta(i), after%ln_theta(i) &
+                - ln_most_theta, ln_least_slip - (after%z(i) - state%ln_d_c(i)))
+            ! round-off of the traction is more of the slip, whose logarithm counts
+            steepness = max(abs(after%by_ln_slip(i)), abs(1.0_wp + state%b_over_a(i) &
+                * after%by_ln_slip(i)) * min(1.0_wp, constants(i, c_a) / block%mu_end(i)))
+            if (block%slip(i) * block%stiffness(i) < most_digits * steepness * block%trial(i)) then
+                block%left(i) = 1.0_wp
+            end if
         end do
-        do i = 1, block%n
-            now%ln_theta_n(i) = log(block%r(i))
-        end do
+    end subroutine state_rate_state
+
+    pure subroutine prepare(kind, constants, dt, block, state, now)
+        integer, intent(in) :: kind
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        real(wp), intent(in) :: dt
+        type(slide_block), intent(in) :: block
+        type(evolution), intent(inout) :: state
+        type(search), intent(inout) :: now
+        integer :: i
+
+        call prepare_evolution(kind, constants, dt, block, state)
+        call find_exponents(constants, block%n, state)
         do i = 1, block%n
             now%high(i) = log(block%trial(i) / block%stiffness(i))
         end do
         do i = 1, block%n
-            now%per_d_c(i) = 1.0_wp / constants(i, c_d_c)
-            now%b_over_a(i) = constants(i, c_b) / constants(i, c_a)
-            x(i) = (block%trial(i) / block%stiffness(i)) * now%per_d_c(i)
-            left(i) = exp(-x(i))
+            now%low(i) = state%ln_d_c(i) + ln_least_slip
+            now%u_0(i) = state%x_n(i) - state%b_over_a(i) * state%ln_theta_n(i)
         end do
-        do i = 1, block%n
-            now%low(i) = now%ln_d_c(i) + ln_least_slip
-            now%u_0(i) = state_exponent(constants(i, c_a), constants(i, c_b), constants(i, c_f0), &
-                ln_v0(i) - now%ln_d_c(i)) - (ln_dt + ln_2 + ln_v0(i))
-            pull = ln_dt - (now%high(i) - now%ln_d_c(i)) - now%ln_theta_n(i)
-            fastest = 1.0_wp - pull * left(i)
-            if (pull <= 0.0_wp) fastest = 1.0_wp - pull
-            aged = min(1.0_wp, (block%r(i) + 0.5_wp * now%dt) / aged_state(block%r(i), now%dt, &
-                left(i), mean_decay(x(i), left(i))))
-            fastest = older * aged + (1.0_wp - older) * fastest   ! fall of ln(theta) with slip/d_c
-            now%several(i) = block%pressure(i) * (constants(i, c_b) * fastest * now%per_d_c(i) &
-                - constants(i, c_a) * block%stiffness(i) / block%trial(i)) - block%stiffness(i)
-        end do
-    end subroutine begin
+    end subroutine prepare
 
-    !> Where one bound for all slips does not tell that there is one equilibrium, several do; points
-    !> at which they do not are left.
-    pure subroutine look_closer(constants, block, now)
+    !> X of the core less ln(slip), with the state at the start of the increment.
+    pure subroutine find_exponents(constants, n, state)
         real(wp), intent(in) :: constants(lanes, n_constants)
-        type(slide_block), intent(in) :: block
-        type(search), intent(inout) :: now
-        real(wp), dimension(lanes) :: t, k, ratio, may
-        real(wp) :: longest
-        integer :: i, j
-
-        longest = 0.0_wp
-        do i = 1, block%n
-            t(i) = block%trial(i) / (constants(i, c_a) * block%pressure(i))
-            k(i) = t(i) * (block%stiffness(i) * constants(i, c_d_c) / block%trial(i))
-            longest = max(longest, t(i) / k(i))
-            ratio(i) = block%r(i) / now%dt
-            if (.not. now%ages) ratio(i) = log(now%dt) - now%ln_theta_n(i)
-            now%several(i) = may_turn_far(k(i), now%b_over_a(i), block%r(i) / now%dt, 0.0_wp)
-            if (ranges(size(ranges))%to * k(i) > t(i)) now%several(i) = 0.0_wp
-        end do
-        do j = 1, size(ranges)
-            if (ranges(j)%from > longest) exit
-            if (now%ages) then
-                do i = 1, block%n
-                    may(i) = may_turn(ranges(j), k(i), now%b_over_a(i) * aged_fall(ranges(j), &
-                        ratio(i)))
-                end do
-            else
-                do i = 1, block%n
-                    may(i) = may_turn(ranges(j), k(i), now%b_over_a(i) * slipped_fall(ranges(j), &
-                        ratio(i), 0.0_wp))
-                end do
-            end if
-            if (any(may(:block%n) > 0.0_wp)) call exclude_roots(ranges(j), t, k, ratio, block%n, &
-                now, may)
-            do i = 1, block%n
-                now%several(i) = max(now%several(i), may(i))
-            end do
-        end do
-    end subroutine look_closer
-
-    !> Points whose misfit may turn in a range, but is not zero there.
-    pure subroutine exclude_roots(range, t, k, ratio, n, now, may)
-        type(slip_range), intent(in) :: range
-        real(wp), dimension(lanes), intent(in) :: t, k
-        real(wp), intent(in) :: ratio(lanes)   !! theta/dt, by the slip law ln(dt/theta)
         integer, intent(in) :: n
-        type(search), intent(in) :: now
-        real(wp), intent(inout) :: may(lanes)   !! above 0 if it may
-        real(wp) :: x_0, low, high, ln_dt
+        type(evolution), intent(inout) :: state
         integer :: i
 
-        ln_dt = log(now%dt)
-        if (now%ages) then
-            do i = 1, n
-                x_0 = now%u_0(i) + now%ln_d_c(i) + now%b_over_a(i) * ln_dt
-                call aged_bounds(range, ratio(i), low, high)
-                may(i) = min(may(i), may_vanish(range, t(i), k(i), x_0 + now%b_over_a(i) * low, &
-                    x_0 + now%b_over_a(i) * high))
-            end do
-        else
-            do i = 1, n
-                x_0 = now%u_0(i) + now%ln_d_c(i) + now%b_over_a(i) * now%ln_theta_n(i)
-                call slipped_bounds(range, ratio(i), 0.0_wp, low, high)
-                may(i) = min(may(i), may_vanish(range, t(i), k(i), x_0 + now%b_over_a(i) * low, &
-                    x_0 + now%b_over_a(i) * high))
-            end do
-        end if
-    end subroutine exclude_roots
+        do i = 1, n
+            state%x_n(i) = state_exponent(constants(i, c_a), constants(i, c_b), &
+                constants(i, c_f0), state%ln_v0(i) - state%ln_d_c(i)) - (state%ln_dt + ln_2 &
+                + state%ln_v0(i)) + state%b_over_a(i) * state%ln_theta_n(i)
+        end do
+    end subroutine find_exponents
 
     !> The slip if the state does not evolve by slip and the spring does not unload.
-    pure subroutine start(constants, block, now)
+    pure subroutine start(constants, block, state, now)
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(in) :: block
+        type(evolution), intent(in) :: state
         type(search), intent(inout) :: now
         real(wp), parameter :: fast = 1.0e6_wp
         real(wp), dimension(lanes) :: y, e_y, ln_part, ln_theta
@@ -229,60 +210,25 @@ contains
             ln_part(i) = log(max(decayed_part(y(i), e_y(i)), tiny(y)))
         end do
         do i = 1, block%n
-            ln_theta(i) = now%ln_theta_n(i)
+            ln_theta(i) = state%ln_theta_n(i)
         end do
-        if (now%ages) then
+        if (state%ages) then
             do i = 1, block%n
-                ln_theta(i) = log(block%r(i) + now%dt)
+                ln_theta(i) = log(block%r(i) + state%dt)
             end do
         end if
         do i = 1, block%n
-            now%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - now%b_over_a(i) &
+            now%at%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - state%b_over_a(i) &
                 * ln_theta(i)
-            now%z(i) = max(min(now%z(i), now%high(i)), now%low(i))
+            now%at%z(i) = max(min(now%at%z(i), now%high(i)), now%low(i))
         end do
     end subroutine start
 
-    !> ln(theta) after each slip, and how it depends on that.
-    pure subroutine evolve(block, now, slip, ln_theta, by_ln_slip)
-        type(slide_block), intent(in) :: block
-        type(search), intent(in) :: now
-        real(wp), intent(in) :: slip(lanes)
-        real(wp), intent(out) :: ln_theta(lanes), by_ln_slip(lanes)
-        real(wp), dimension(lanes) :: left, theta
-        real(wp) :: x, mean, pull, ln_dt
-        integer :: i
-
-        do i = 1, block%n
-            left(i) = exp(-slip(i) * now%per_d_c(i))
-        end do
-        if (now%ages) then
-            do i = 1, block%n
-                x = slip(i) * now%per_d_c(i)
-                mean = mean_decay(x, left(i))
-                theta(i) = aged_state(block%r(i), now%dt, left(i), mean)
-                by_ln_slip(i) = aged_slope(x, block%r(i), now%dt, left(i), mean, theta(i))
-            end do
-            do i = 1, block%n
-                ln_theta(i) = log(theta(i))
-            end do
-        else
-            ln_dt = log(now%dt)
-            do i = 1, block%n
-                x = slip(i) * now%per_d_c(i)
-                mean = mean_decay(x, left(i))
-                pull = ln_dt - (now%z(i) - now%ln_d_c(i)) - now%ln_theta_n(i)
-                ln_theta(i) = now%ln_theta_n(i) + x * mean * pull
-                by_ln_slip(i) = slipped_slope(x, left(i), mean, pull)
-            end do
-        end if
-    end subroutine evolve
-
     !> One step for every point that has not settled: whose last step was not small enough for its
     !> result to be exact.
-    pure subroutine step(constants, slip, ln_theta, by_ln_slip, block, now, still)
+    pure subroutine step(constants, state, block, now, still)
         real(wp), intent(in) :: constants(lanes, n_constants)
-        real(wp), dimension(lanes), intent(in) :: slip, ln_theta, by_ln_slip
+        type(evolution), intent(in) :: state
         type(slide_block), intent(inout) :: block
         type(search), intent(inout) :: now
         real(wp), intent(out) :: still   !! above 0 as long as a point has not settled
@@ -292,7 +238,8 @@ contains
         integer :: i
 
         do i = 1, block%n
-            u(i) = u_of(now%u_0(i), now%z(i), now%b_over_a(i), ln_theta(i))
+            u(i) = u_of(now%u_0(i), now%at%z(i), state%b_over_a(i), &
+                now%at%ln_theta(i))
         end do
         do i = 1, block%n
             e_u(i) = exp(min(u(i), far))
@@ -300,38 +247,45 @@ contains
         do i = 1, block%n
             y(i) = asinh_of(u(i), e_u(i))
         end do
+        if (state%presses) then
+            do i = 1, block%n
+                if (block%left(i) > 0.0_wp) block%d_pressure(i) = slope_of(e_u(i)) &
+                    * constants(i, c_alpha) * merge(now%at%by_pressing(i), 0.0_wp, block%before(i) &
+                    > 0.0_wp)
+            end do
+        end if
         still = 0.0_wp
         do i = 1, block%n
             by_z = block%pressure(i) * slope_of(e_u(i)) * (constants(i, c_a) + constants(i, c_b) &
-                * by_ln_slip(i))
-            misfit = block%trial(i) - block%stiffness(i) * slip(i) - constants(i, c_a) * y(i) &
-                * block%pressure(i)
-            fall = max(block%stiffness(i) * slip(i) + by_z, epsilon(fall) * block%trial(i))
+                * now%at%by_ln_slip(i))
+            misfit = block%trial(i) - block%stiffness(i) * now%at%slip(i) - constants(i, c_a) &
+                * y(i) * block%pressure(i)
+            fall = max(block%stiffness(i) * now%at%slip(i) + by_z, epsilon(fall) * block%trial(i))
             per_fall = 1.0_wp / fall
-            if (misfit > 0.0_wp) now%low(i) = now%z(i)
-            if (misfit <= 0.0_wp) now%high(i) = now%z(i)
+            if (misfit > 0.0_wp) now%low(i) = now%at%z(i)
+            if (misfit <= 0.0_wp) now%high(i) = now%at%z(i)
             move = misfit * per_fall
             ! u bends the more, the faster it changes: far from equilibrium with its slip the state
             ! may change by a power of the slip, and u by b/a of its logarithm
-            steepness = abs(1.0_wp + now%b_over_a(i) * by_ln_slip(i))
+            steepness = abs(1.0_wp + state%b_over_a(i) * now%at%by_ln_slip(i))
             steepness = max(1.0_wp, steepness, steepness * (abs(by_z) * per_fall))
             nearly = abs(move) * steepness <= small
-            next = now%z(i) + move
+            next = now%at%z(i) + move
             if (max(now%low(i) - next, next - now%high(i)) >= 0.0_wp .and. .not. nearly) then
                 next = 0.5_wp * (now%low(i) + now%high(i))
             end if
             if (block%left(i) > 0.0_wp) then
-                block%slip(i) = slip(i)
+                block%slip(i) = now%at%slip(i)
                 block%mu_end(i) = constants(i, c_a) * y(i)
                 block%d_slip(i) = by_z   ! by ln(slip), for now
-                now%ln_theta(i) = ln_theta(i)
+                now%ln_theta(i) = now%at%ln_theta(i)
             end if
             if (block%left(i) > 0.0_wp) then
                 if (nearly .and. block%left(i) < active) then
                     block%left(i) = 0.0_wp
                 else
                     block%left(i) = merge(last, active, nearly)
-                    now%z(i) = next
+                    now%at%z(i) = next
                 end if
             end if
             still = max(still, block%left(i))

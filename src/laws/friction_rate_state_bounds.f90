@@ -79,26 +79,28 @@ contains
 
     !> How fast ln(theta) falls with x by the slip law, at most. The pressure takes `pressed` from
     !> it in the increment (Linker and Dieterich).
-    elemental function slipped_fall(range, ln_ratio, pressed) result(fall)
+    elemental function slipped_fall(range, pull, growth, pressed) result(fall)
         type(slip_range), intent(in) :: range
-        real(wp), intent(in) :: ln_ratio   !! of dt over theta at the start
+        real(wp), intent(in) :: pull      !! ln(theta) of steady sliding less that at the start, at
+                                          !! least
+        real(wp), intent(in) :: growth    !! of ln(theta) of steady sliding with ln(slip rate), at
+                                          !! least; -1 but for extensions
         real(wp), intent(in) :: pressed
-        real(wp) :: fall, pull
+        real(wp) :: fall
 
-        pull = ln_ratio - range%ln_to   ! the least one
-        fall = range%mean_from - pull * merge(range%left_to, range%left_from, pull > 0.0_wp) &
+        fall = -pull * merge(range%left_to, range%left_from, pull > 0.0_wp) &
+            - growth * merge(range%mean_to, range%mean_from, growth > 0.0_wp) &
             - pressed * merge(range%fall_to, range%fall_from, pressed > 0.0_wp)
     end function slipped_fall
 
     !> ln(theta) in a range, less that at the start.
-    elemental subroutine slipped_bounds(range, ln_ratio, pressed, low, high)
+    elemental subroutine slipped_bounds(range, least, most, pressed, low, high)
         type(slip_range), intent(in) :: range
-        real(wp), intent(in) :: ln_ratio, pressed   !! as above
+        real(wp), intent(in) :: least, most   !! pulls, see above
+        real(wp), intent(in) :: pressed
         real(wp), intent(out) :: low, high
-        real(wp) :: least, most, from, to
+        real(wp) :: from, to
 
-        least = ln_ratio - range%ln_to
-        most = ln_ratio - range%ln_from
         from = range%from * range%mean_from
         to = range%to * range%mean_to
         low = least * merge(from, to, least > 0.0_wp) &

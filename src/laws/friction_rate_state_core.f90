@@ -15,7 +15,8 @@ module friction_rate_state_core
     implicit none
     private
 
-    public :: fall_of_mean, mean_growth, state_exponent, asinh_exp, slope_asinh_exp, asinh_of, &
+    public :: fall_of_mean, mean_growth, pressed_by, state_exponent, asinh_exp, slope_asinh_exp, &
+        asinh_of, &
         slope_of, far, slip_rate, decayed_part, ageing_rate, slip_law_rate, mean_decay, &
         aged_state, aged_slope, slipped_slope
 
@@ -158,6 +159,15 @@ contains
 
         by_ln_slip = x * (left * pull - mean)
     end function slipped_slope
+
+    !> How much ln(theta) falls because the pressure changes (Linker and Dieterich).
+    elemental function pressed_by(alpha_over_b, before, after) result(fall)
+        real(wp), intent(in) :: alpha_over_b    !! [-]
+        real(wp), intent(in) :: before, after   !! pressures, > 0 [F/L^2]
+        real(wp) :: fall
+
+        fall = alpha_over_b * log(after / before)
+    end function pressed_by
 
     !> `mean_decay`, and minus its derivative, for x of either sign.
     elemental subroutine mean_growth(x, left, mean, fall)

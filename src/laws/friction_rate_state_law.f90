@@ -24,7 +24,8 @@ module friction_rate_state_law
     use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
         may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
     use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
-        fall_of_mean, mean_decay, mean_growth, slip_law_rate, slipped_slope, slope_asinh_exp, &
+        fall_of_mean, mean_decay, mean_growth, pressed_by, slip_law_rate, slipped_slope, &
+        slope_asinh_exp, &
         state_exponent
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
     implicit none
@@ -242,10 +243,15 @@ contains
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
         real(wp) :: fall
+        real(wp), parameter :: wide = 1.0e100_wp
 
         fall = 0.0_wp
         if (.not. pressed_throughout(self, pressure)) return
-        fall = self%alpha / self%b * (log(pressure) - log(self%pressure_start))
+        if (pressure < wide * self%pressure_start .and. self%pressure_start < wide * pressure) then
+            fall = pressed_by(self%alpha / self%b, self%pressure_start, pressure)
+        else   ! the quotient may be out of range
+            fall = self%alpha / self%b * (log(pressure) - log(self%pressure_start))
+        end if
         fall = max(-most_pressing, min(fall, most_pressing))
     end function pressing
 
@@ -585,7 +591,7 @@ contains
         logical :: may
         real(wp), parameter :: least_share = 1.0e-100_wp
         type(slip_range) :: range
-        real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall
+        real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall, ln_ratio
         integer :: i
 
         call evolution_bounds(self, [least_slip * self%d_c, trial / stiffness], pressure, dt, &
@@ -598,6 +604,7 @@ contains
         b_over_a = self%b / self%a
         pressed = 0.0_wp
         if (self%alpha > 0.0_wp) pressed = pressing(self, pressure)
+        ln_ratio = log(dt) - log(theta_n)
         x_0 = direct_exponent(self, self%d_c, dt, log(merge(dt, theta_n, self%evolution == ageing)))
         do i = 1, size(ranges)
             if (k * ranges(i)%from > t) exit
@@ -606,13 +613,14 @@ contains
                 if (self%alpha > 0.0_wp) range = pressed_range(range, pressed)
                 fall = aged_fall(range, theta_n / dt)
             else
-                fall = slipped_fall(range, log(dt) - log(theta_n), pressed)
+                fall = slipped_fall(range, ln_ratio - range%ln_to, -1.0_wp, pressed)
             end if
             if (may_turn(range, k, b_over_a * fall) <= 0.0_wp) cycle
             if (self%evolution == ageing) then
                 call aged_bounds(range, theta_n / dt, low, high)
             else
-                call slipped_bounds(range, log(dt) - log(theta_n), pressed, low, high)
+                call slipped_bounds(range, ln_ratio - range%ln_to, ln_ratio - range%ln_from, &
+                    pressed, low, high)
             end if
             may = may_vanish(range, t, k, x_0 + b_over_a * low, x_0 + b_over_a * high) > 0.0_wp
             if (may) return

@@ -1,13 +1,12 @@
-!> The arithmetic of linear slip-weakening on plain numbers: what both the update of one point and
-!> the
-!> vector lanes of a batch are made of. A core uses nothing but the kind of its numbers
-!> (src/CMakeLists.txt).
+!> The arithmetic of linear slip-weakening, healing or not, on plain numbers: what both the update
+!> of one point and the vector lanes of a batch are made of. A core uses nothing but the kind of its
+!> numbers (src/CMakeLists.txt).
 module friction_slip_weakening_core
     use, intrinsic :: iso_fortran_env, only : wp => real64
     implicit none
     private
 
-    public :: coefficient_at, fall_at, slip_to_balance
+    public :: coefficient_at, fall_at, forgotten, remembered, slip_to_balance
 
 contains
 
@@ -44,5 +43,27 @@ contains
         slip = above_kinetic / stiffness
         if (stiffness > fall) slip = min(slip, above_start / (stiffness - fall))
     end function slip_to_balance
+
+    !> What healing leaves of D in an increment without slip. More than d_c, which a user may have
+    !> set, counts as that.
+    elemental function forgotten(d, d_c, left) result(d_left)
+        real(wp), intent(in) :: d      !! at the start of the increment, >= 0 [L]
+        real(wp), intent(in) :: d_c    !! > 0 [L]
+        real(wp), intent(in) :: left   !! e^-y, y = xi dt
+        real(wp) :: d_left             !! [L]
+
+        d_left = min(d, d_c) * left
+    end function forgotten
+
+    !> D after a slip at a constant rate.
+    elemental function remembered(d_left, by_slip, slip, d_c) result(d)
+        real(wp), intent(in) :: d_left    !! see above [L]
+        real(wp), intent(in) :: by_slip   !! what a unit of slip adds, (1 - e^-y)/y [-]
+        real(wp), intent(in) :: slip      !! in the increment, >= 0 [L]
+        real(wp), intent(in) :: d_c       !! > 0 [L]
+        real(wp) :: d                     !! [L]
+
+        d = min(d_left + by_slip * slip, d_c)
+    end function remembered
 
 end module friction_slip_weakening_core

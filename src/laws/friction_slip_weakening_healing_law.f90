@@ -16,7 +16,8 @@ module friction_slip_weakening_healing_law
     use friction_law, only : below, law_description, law_state, load_rates, sliding
     use friction_law_constants, only : constant_table, law_constant, no_constants
     use friction_rate_state_core, only : mean_decay
-    use friction_slip_weakening_core, only : coefficient_at, fall_at, slip_to_balance
+    use friction_slip_weakening_core, only : coefficient_at, fall_at, forgotten, remembered, &
+        slip_to_balance
     use friction_slip_weakening_law, only : slip_variable, slip_weakening_constants, &
         slip_weakening_law
     use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
@@ -106,7 +107,7 @@ contains
         type(healing) :: heals
 
         heals = healing_of(self, dt, old%r)
-        new%r = min(heals%d_left + heals%by_slip * slip, self%d_c)
+        new%r = remembered(heals%d_left, heals%by_slip, slip, self%d_c)
         new%mu = coefficient_at(new%r, self%mu_s, self%mu_k, self%d_c)
         d_pressure = new%mu
         resistance = new%mu * pressure
@@ -172,7 +173,7 @@ contains
         rates%mu = -(self%mu_s - self%mu_k) / self%d_c * rates%r
     end function state_rates
 
-    !> What time does to D. More than d_c, which a user may have set, counts as that.
+    !> What time does to D.
     pure function healing_of(self, dt, d) result(heals)
         class(slip_weakening_healing_law), intent(in) :: self
         real(wp), intent(in) :: dt   !! increment of time, >= 0 [T]
@@ -182,7 +183,7 @@ contains
 
         y = self%xi * dt
         left = exp(-y)
-        heals%d_left = min(d, self%d_c) * left
+        heals%d_left = forgotten(d, self%d_c, left)
         heals%by_slip = mean_decay(y, left)
     end function healing_of
 
