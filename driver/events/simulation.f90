@@ -47,7 +47,8 @@ contains
         system = slider(run%mass, run%stiffness, run%damping, run%area, run%props, &
             run%chain%coupling, run%chain%ends)
         system%across = run%across
-        system%across%rest = -run%drive%normal_traction(0.0_dp, 1) / run%props(prop_alpha_n)
+        system%across%rest = -max(0.0_dp, run%drive%normal_traction(0.0_dp, 1)) &
+            / run%props(prop_alpha_n)
         if (run%chain%loads_differ()) system%load = load_factors(run%chain)
         if (allocated(run%chain%constants)) system%constants = run%chain%constants
         call live%chain_events%prepare(run)

@@ -7,6 +7,9 @@
 !> the drive's largest speed since the peak. In a hold the drive counts as fast as before.
 !> Everything is looked at in the sense of the loading: a mirrored motion has the same events.
 !>
+!> A force that does not change but for round-off is a plateau: an event begins at the end of one,
+!> and is over at the start of one.
+!>
 !> The sense turns once the drive has come back by so much that the force could change by `drop`;
 !> meanwhile, behind the place that the drive has reached, nothing counts.
 module slip_events
@@ -149,19 +152,30 @@ contains
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step [L/T]
         type(slip_event), allocatable, intent(inout) :: events(:)
-        real(dp) :: fall
+        real(dp) :: fall, highest
 
         fall = self%peak%force - self%trough%force
         if (fall > self%drop .and. now%force > self%trough%force + max(least_rise * fall, &
             min(self%drop, most_rise * fall))) then
             call self%conclude(events)
             call self%start_at(now)
-        else if (now%force >= self%peak%force) then
+        else if (now%force >= self%peak%force - uncertainty(self, now)) then
+            highest = max(now%force, self%peak%force)   ! a slow fall does not drag it along
             call self%start_at(now)
+            self%peak%force = highest
         else
             call follow_fall(self, now, slip_rate)
         end if
     end subroutine look
+
+    !> Round-off of the force, which is a difference of two positions.
+    pure function uncertainty(self, now) result(force)
+        class(event_finder), intent(in) :: self
+        type(moment), intent(in) :: now
+        real(dp) :: force   !! [F]
+
+        force = 4.0_dp * epsilon(force) * (abs(now%force) + self%stiffness * abs(now%drive))
+    end function uncertainty
 
     !> A peak that nothing has followed yet.
     pure subroutine start_at(self, now)
@@ -185,7 +199,7 @@ contains
         self%fastest = max(self%fastest, now%velocity)
         self%slipping = max(self%slipping, slip_rate)
         self%driving = max(self%driving, self%speed)
-        if (now%force > self%trough%force) return
+        if (now%force >= self%trough%force - uncertainty(self, now)) return
         self%trough = now
         self%current%onset = self%peak%time
         self%current%duration = now%time - self%peak%time

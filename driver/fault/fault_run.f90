@@ -75,6 +75,7 @@ contains
                 call live%fields%create(live%here, together, base)
                 call live%fields%write_record(live%here, together, live%state)
             end if
+            call leave_checkpoint(live, together, problem)   ! a launcher may give no time for one
         end if
         call go(live, together, quiet, problem)
         call live%records%finish()

@@ -161,7 +161,8 @@ contains
         end if
     end subroutine read_values
 
-    !> Marks the values that equal a number. Those that are marked, NaN among them, are not compared.
+    !> Marks the values that equal a number. Those that are marked, NaN among them, are not
+    !> compared.
     pure subroutine mark_equal(values, number, marked)
         real(dp), intent(in) :: values(:), number
         logical, intent(inout) :: marked(:)

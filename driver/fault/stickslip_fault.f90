@@ -32,8 +32,8 @@ program stickslip_fault
             // 'on one process (Debian: libopenmpi-dev libfftw3-mpi-dev, then build again)'
         call exit_program(exit_failed)
     end if
-    call together%start()
     call watch_for_interrupts()
+    call together%start()
     call read_namelist_file(input, file, problem)
     if (len(problem) > 0) then
         problem = 'stickslip: ' // input // ': ' // problem // new_line('a')

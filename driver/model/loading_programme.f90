@@ -75,13 +75,12 @@ contains
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
         integer, intent(in) :: i
-        real(dp) :: p               !! >= 0 [F/L^2]
+        real(dp) :: p               !! below 0: the contact is open [F/L^2]
         real(dp), parameter :: two_pi = 8.0_dp * atan(1.0_dp)
 
         p = self%normal(i) + self%normal_rate(i) * (t - self%start(i))
         if (self%amplitude > 0.0_dp) p = p &
             + self%amplitude * sin(two_pi * self%frequency * t + self%phase)
-        p = max(0.0_dp, p)
     end function normal_traction
 
     !> The largest normal traction of all pieces.

@@ -454,7 +454,7 @@ contains
             call set_accelerations(system, state)
             return
         end if
-        if (abs(normal - state%normal) <= 1.0e-14_dp * normal) return
+        if (abs(normal - state%normal) <= 1.0e-14_dp * abs(normal)) return
         allocate (zero(size(state%x)), tangent(size(state%x)))
         zero = 0.0_dp
         old = state%statev

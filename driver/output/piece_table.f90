@@ -39,7 +39,7 @@ contains
             allocate (rows(n_columns, n), source=none)
             do i = 1, n
                 rows(1:5, i) = [real(i, dp), drive%start(i), ends(i), drive%velocity(i), &
-                    drive%normal_traction(ends(i), i)]
+                    max(0.0_dp, drive%normal_traction(ends(i), i))]
                 rows(6:9, i) = event_means(result%pieces(i), run%area)
                 if (result%friction(i)%seen) rows(10:12, i) = [result%friction(i)%peak, &
                     result%friction(i)%least, result%friction(i)%last]

@@ -74,7 +74,8 @@ contains
 
         row(:11) = [state%time, state%drive, mean(state%x), mean(state%v), mean(state%a), &
             mean(state%spring), mean(state%friction), mean(state%statev(:, statev_mu)), &
-            mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip)), state%normal]
+            mean(state%statev(:, statev_r)), mean(state%statev(:, statev_slip)), &
+            max(0.0_dp, state%normal)]
         if (columns > 11) row(12:) = [state%statev(1, statev_u_n), state%v_n]
     end function series_row
 

@@ -1,11 +1,11 @@
 !> One row of the table of a sweep: the values of its keys, and what the run has come to.
 module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use linear_stability, only : analyse, stability, undecided, verdicts
     use number_text, only : quoted_field, short_text
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
     use steady_sliding, only : sliding_case, take_piece
-    use linear_stability, only : analyse, stability, undecided, verdicts
     use sweep_settings, only : sweep_axis
     use run_warnings, only : find_warnings, run_warning
     implicit none
@@ -89,9 +89,9 @@ contains
 
         call take_piece(this, run, run%drive%piece(run%t_end))
         call analyse(this, steady)
-        text = trim(verdicts(steady%verdict)) // ',NaN'
-        if (steady%verdict /= undecided) text = trim(verdicts(steady%verdict)) // ',' &
-            // short_text(steady%growth)
+        text = 'NaN'
+        if (steady%verdict /= undecided) text = short_text(steady%growth)
+        text = trim(verdicts(steady%verdict)) // ',' // text
     end function steady_text
 
     !> Codes of the warnings, blanks between them.

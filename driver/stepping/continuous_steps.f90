@@ -93,11 +93,11 @@ contains
             eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
             eq%forward = run%loading_sense()
             self%implicit = eq%surface%traits%stiff
-            ! as the traction vanishes, the slip rates of rate-and-state friction have no bound;
-            ! what is left out is an impulse, and of the order of the square
-            if (self%implicit) self%open_below = 1.0e-2_dp * sqrt(run%rtol) &
-                * run%drive%largest_normal()
-            if (cohesion(run%props) > 0.0_dp) self%open_below = -1.0_dp   ! closed without pressure
+            self%open_below = run%drive%largest_normal() * vanishing(self)
+            if (cohesion(run%props) > 0.0_dp) then   ! closed without pressure
+                eq%least_pressure = max(eq%least_pressure, self%open_below)
+                self%open_below = -tiny(force)
+            end if
             force = run%area * typical_strength(run%props, run%drive%largest_normal())
             stiffness = run%stiffness
             if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
@@ -116,11 +116,37 @@ contains
             call synchronise(self, start)
             eq%phase = phase_stick
             if (eq%surface%traits%onset == onset_gradual) eq%phase = phase_slide
-            if (start%normal <= self%open_below) eq%phase = phase_open
+            if (start%normal <= min(0.0_dp, self%open_below)) eq%phase = phase_open
             eq%sense = eq%sense_of(self%y(elastic))
             if (eq%rigid) call take_off_spring(self, start)
         end associate
     end subroutine prepare
+
+    !> Part of the largest normal traction below which a contact under a varying one counts as open:
+    !> what is left out is an impulse, and of the order of the square. As the normal traction
+    !> vanishes, the slip rates of rate-and-state friction have no bound, and the R of the
+    !> subloading law, traction over strength, is lost in its round-off.
+    pure function vanishing(self) result(part)
+        class(continuous), intent(in) :: self
+        real(dp) :: part
+
+        part = 0.0_dp
+        if (self%equations%surface%traits%stiff) then
+            part = 1.0e-2_dp * sqrt(self%rtol)
+        else if (self%equations%surface%traits%memory == 1) then
+            part = max(1.0e-6_dp, 16.0_dp * epsilon(part) / self%rtol)
+        end if
+    end function vanishing
+
+    !> Normal traction below which the contact is open now [F/L^2]: one that does not vary is taken
+    !> as it is.
+    pure function open_level(self) result(pressure)
+        class(continuous), intent(in) :: self
+        real(dp) :: pressure
+
+        pressure = self%open_below
+        if (self%equations%steady) pressure = min(0.0_dp, pressure)
+    end function open_level
 
     !> A rigid contact carries what the block's velocity, or without one the friction at the start,
     !> asks for.
@@ -291,7 +317,7 @@ contains
 
         pressure = self%drive%normal_traction(state%time, piece)
         associate (eq => self%equations)
-            if (pressure > self%open_below .and. eq%phase /= phase_open) then
+            if (pressure > open_level(self) .and. eq%phase /= phase_open) then
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
                 call press(self, state%normal, pressure)
                 call apply_normal_traction(self%system, pressure, state, taken)
@@ -312,9 +338,9 @@ contains
                 end if
                 if (eq%surface%traits%onset /= onset_gradual) eq%phase = phase_stick
                 if (eq%phase == phase_capped) eq%phase = phase_slide
-            else if (pressure > self%open_below .eqv. eq%phase == phase_open) then
+            else if (pressure > open_level(self) .eqv. eq%phase == phase_open) then
                 eq%phase = phase_open
-                if (pressure > self%open_below) eq%phase = merge(phase_slide, phase_stick, &
+                if (pressure > open_level(self)) eq%phase = merge(phase_slide, phase_stick, &
                     eq%surface%traits%onset == onset_gradual)
                 self%y(elastic) = 0.0_dp
                 if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) self%y(extension) = 0.0_dp
@@ -485,11 +511,19 @@ contains
             abs(self%y(velocity))))
         self%weights(extension) = 1.0_dp / (self%rtol * max(self%natural(extension), &
             abs(self%y(extension))))
-        if (self%equations%steady .or. .not. self%equations%surface%traits%stiff) return
-        ! what counts for slip that goes with an exponential is traction over pressure
+        if (self%equations%steady) return
         call self%equations%inputs(t, v_drive, pressure, pressure_rate)
-        self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
-            * max(pressure, self%open_below) / self%drive%largest_normal()))
+        pressure = max(pressure, self%open_below, self%equations%least_pressure)
+        if (self%equations%surface%traits%stiff) then
+            ! what counts for slip that goes with an exponential is traction over pressure
+            self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
+                * pressure / self%drive%largest_normal()))
+        else if (self%equations%surface%traits%memory == 1) then
+            ! R is traction over strength, and how it grows from a touchdown on is not forgotten
+            self%weights(elastic) = 1.0_dp / (self%natural(elastic) * self%rtol * min(1.0_dp, &
+                max(pressure, self%equations%surface%law%cohesion) &
+                / self%drive%largest_normal()))
+        end if
     end subroutine set_weights
 
     !> Ends a step where its phase does, if it has ended.

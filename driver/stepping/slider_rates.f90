@@ -29,6 +29,8 @@ module slider_rates
 
     integer, parameter, public :: switches = 3   !! ways in which a phase can end
 
+    real(dp), parameter :: too_fast = 1.0e100_dp   !! for rates that are to be squared [L/T]
+
     type :: slider_equations
         type(sliding_surface) :: surface
         real(dp) :: mass = 0.0_dp, stiffness = 0.0_dp, damping = 0.0_dp   !! as of `slider`
@@ -101,8 +103,9 @@ contains
         if (self%phase == phase_open) then
             pressure = 0.0_dp
             pressure_rate = 0.0_dp
-        else
-            pressure = max(pressure, self%least_pressure)
+        else if (pressure < self%least_pressure) then
+            pressure = self%least_pressure
+            pressure_rate = 0.0_dp
         end if
     end subroutine inputs
 
@@ -129,6 +132,12 @@ contains
             call dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
         else
             call elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
+        end if
+        ! stages of a step that is going to be refused may be anywhere
+        failed = failed .or. max(abs(contact%velocity), abs(contact%slip)) > too_fast
+        if (failed) then
+            dy = 0.0_dp
+            return
         end if
         dy(extension) = v_drive - contact%velocity
         dy(velocity) = 0.0_dp

@@ -29,6 +29,17 @@ module time_integrator
         integer :: friction_status = friction_ok
     end type balance
 
+    !> Encloses the first root of a block's residual.
+    type :: root_bracket
+        real(dp) :: sense = 1.0_dp    !! in which it is looked for, 1 or -1
+        real(dp) :: low = 0.0_dp      !! the last place before the root [L]
+        real(dp) :: high = 0.0_dp     !! a place beyond, if `closed` [L]
+        real(dp) :: stride = 0.0_dp   !! to the next place [L]
+        logical :: closed = .false., halve = .false.
+    contains
+        procedure :: narrow
+    end type root_bracket
+
     type :: newmark
         real(dp) :: beta = 0.25_dp, gamma = 0.5_dp   !! mean acceleration
         real(dp) :: tolerance = 1.0e-10_dp   !! of the residual, relative to the largest force
@@ -110,8 +121,7 @@ contains
         end if
         call weigh_old_state(self, system, old)
         call iterate(self, system, old, new, report, balanced)
-        if (.not. balanced .and. size(old%x) == 1) call search(self, system, old, new, report, &
-            balanced)
+        if (.not. balanced) call search(self, system, old, new, report, balanced)
         if (report%status < 0) return
         report%status = friction_no_convergence
         if (.not. balanced) return
@@ -137,6 +147,7 @@ contains
 
         most = self%max_iterations
         if (size(old%x) == 1) most = min(most, most_of_one)
+        most = report%iterations + most
         balanced = .false.
         call evaluate(self, system, old, new, report)
         associate (w => self%work)
@@ -167,9 +178,14 @@ contains
         end associate
     end subroutine iterate
 
-    !> The balance of one block by a bracket: the first one from no displacement on, in the sense in
-    !> which the forces pull. It cannot be closer than the residual over the largest stiffness there
-    !> is, and there is one, because the drive spring bounds how far friction lets the block go.
+    !> The balance by brackets, where Newton's method does not settle: blocks that are no neighbours
+    !> of one another each go to their own first balance while the others stand still, in turns.
+    !>
+    !> Where the forces pull all blocks the same way none goes beyond the first balance of the
+    !> whole, since a block that advances pulls its neighbours along; and every turn lowers the
+    !> potential of the step, for friction in a step depends on the block's own displacement alone.
+    !> With stiff couplings the turns approach slowly: Newton's method goes on from where they have
+    !> come to.
     subroutine search(self, system, old, new, report, balanced)
         class(newmark), intent(inout) :: self
         type(slider), intent(in) :: system
@@ -177,55 +193,106 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(inout) :: report
         logical, intent(out) :: balanced
-        integer, parameter :: most_doublings = 200, most_bisections = 200
-        real(dp) :: ahead, low, high, stride, middle, next
-        integer :: i
+        integer, parameter :: most_rounds = 100, turns_in_round = 4
+        real(dp) :: reached(size(old%x))
+        integer :: round, turn, n, pairs
 
-        low = 0.0_dp
-        call residual_at(low)
-        if (report%status < 0) return
-        ahead = sign(1.0_dp, self%work%residual(1))
-        stride = ahead * self%now%norm / (self%now%inertia + (1.0_dp - self%alpha_f) &
-            * (system%stiffness + system%area * system%props(prop_alpha_t)))
-        do i = 1, most_doublings
-            balanced = self%now%norm <= self%tolerance * self%now%scale
-            if (balanced) return
-            high = low + stride
-            call residual_at(high)
-            if (report%status < 0) return
-            if (ahead * self%work%residual(1) <= 0.0_dp) exit
-            low = high
-            stride = 2.0_dp * stride
-        end do
-        middle = high
-        do i = 1, most_bisections
-            balanced = self%now%norm <= self%tolerance * self%now%scale .or. abs(high - low) &
-                <= 2.0_dp * epsilon(low) * abs(old%x(1) + middle)
-            if (balanced) return
-            if (ahead * self%work%residual(1) > 0.0_dp) then
-                low = middle
-            else
-                high = middle
-            end if
-            call fill(self, system)
-            next = middle + self%work%residual(1) / self%work%matrix%diagonal(1)
-            middle = low + 0.5_dp * (high - low)
-            if (mod(i, 2) == 0 .and. (next - low) * (next - high) < 0.0_dp) middle = next
-            call residual_at(middle)
-            if (report%status < 0) return
-        end do
-
-    contains
-
-        subroutine residual_at(dx)
-            real(dp), intent(in) :: dx   !! increment of displacement [L]
-
-            self%work%dx = dx
+        n = size(old%x)
+        pairs = n - mod(n, 2)   ! in a ring the last of an odd number is a neighbour of the first
+        self%work%dx = 0.0_dp
+        call evaluate(self, system, old, new, report)
+        do round = 1, most_rounds
+            do turn = 1, turns_in_round
+                call bracket(self, system, old, new, report, 1, pairs, balanced)
+                call bracket(self, system, old, new, report, 2, pairs, balanced)
+                call bracket(self, system, old, new, report, pairs + 1, n, balanced)
+                if (report%status < 0 .or. n == 1) return
+            end do
+            reached = self%work%dx
+            call iterate(self, system, old, new, report, balanced)
+            if (report%status < 0 .or. balanced) return
+            self%work%dx = reached
             call evaluate(self, system, old, new, report)
-            report%iterations = report%iterations + 1
-        end subroutine residual_at
-
+        end do
     end subroutine search
+
+    !> Takes every second block from `first` to `last` to its own balance, the first one in the
+    !> sense in which the forces pull it. It cannot be closer than the residual over the largest
+    !> stiffness there is, and there is one, because the springs bound how far friction lets a block
+    !> go.
+    subroutine bracket(self, system, old, new, report, first, last, balanced)
+        class(newmark), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new   !! at the displacements in the workspace
+        type(step_report), intent(inout) :: report
+        integer, intent(in) :: first, last
+        logical, intent(out) :: balanced           !! each of these blocks
+        integer, parameter :: most_evaluations = 400
+        type(root_bracket) :: brackets(first:last)
+        real(dp) :: stiffest   !! contact spring [F/L^3]
+        logical :: settled
+        integer :: i, evaluation
+
+        balanced = .true.
+        if (report%status < 0) return
+        stiffest = system%props(prop_alpha_t)
+        if (allocated(system%constants)) stiffest = maxval(system%constants(:, prop_alpha_t))
+        associate (w => self%work)
+            call fill(self, system)
+            do i = first, last, 2
+                brackets(i) = root_bracket(sense=sign(1.0_dp, w%residual(i)), low=w%dx(i), &
+                    stride=w%residual(i) / (w%matrix%diagonal(i) + (1.0_dp - self%alpha_f) &
+                    * system%area * stiffest))
+            end do
+            do evaluation = 1, most_evaluations
+                balanced = .true.
+                do i = first, last, 2
+                    if (abs(w%residual(i)) <= 0.5_dp * self%tolerance * self%now%scale) cycle
+                    call brackets(i)%narrow(w%residual(i), w%matrix%diagonal(i), old%x(i), &
+                        w%dx(i), settled)
+                    balanced = balanced .and. settled
+                end do
+                if (balanced) return
+                call evaluate(self, system, old, new, report)
+                report%iterations = report%iterations + 1
+                if (report%status < 0) return
+                call fill(self, system)
+            end do
+        end associate
+    end subroutine bracket
+
+    !> The next place to look at, from the residual and its slope at the one before: twice as far
+    !> each time until the force has turned, then by Newton's method and halves in turns.
+    pure subroutine narrow(self, residual, slope, origin, place, settled)
+        class(root_bracket), intent(inout) :: self
+        real(dp), intent(in) :: residual      !! at `place` [F]
+        real(dp), intent(in) :: slope         !! by which it falls there [F/L]
+        real(dp), intent(in) :: origin        !! from which `place` is measured [L]
+        real(dp), intent(inout) :: place      !! [L]
+        logical, intent(out) :: settled       !! the bracket is as narrow as round-off lets it be
+        real(dp) :: newton
+
+        settled = .false.
+        if (self%sense * residual > 0.0_dp) then
+            self%low = place
+        else
+            self%high = place
+            self%closed = .true.
+        end if
+        if (.not. self%closed) then
+            place = self%low + self%stride
+            self%stride = 2.0_dp * self%stride
+            return
+        end if
+        settled = abs(self%high - self%low) <= 2.0_dp * epsilon(place) * abs(origin + place)
+        if (settled) return
+        newton = place + residual / slope
+        self%halve = .not. self%halve
+        place = self%low + 0.5_dp * (self%high - self%low)
+        if (self%halve) return
+        if ((newton - self%low) * (newton - self%high) < 0.0_dp) place = newton
+    end subroutine narrow
 
     !> What the old state adds to the balance of forces.
     subroutine weigh_old_state(self, system, old)

@@ -125,7 +125,7 @@ contains
             - mass * ((1.0_dp - self%alpha_m) * [new%a(1), new%a_n] &
             + self%alpha_m * [old%a(1), old%a_n])
         this%scale = max(abs(new%spring(1)) + abs(new%friction(1)) + abs(mass(1) * new%a(1)), &
-            system%area * (new%load + new%normal) + abs(mass(2) * new%a_n))
+            system%area * (abs(new%load) + new%normal) + abs(mass(2) * new%a_n))
         this%stiffness = system%area * tangent([2, 1], [2, 1])
         this%stiffness(1, 1) = this%stiffness(1, 1) + system%stiffness
         this%stiffness(1, 2) = this%stiffness(1, 2) + system%across%tilt

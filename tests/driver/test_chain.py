@@ -158,6 +158,41 @@ class Motion(Chain):
         self.assertAlmostEqual(late[0][5], late[1][5], delta=0.02 * late[1][5])   # spring force
 
 
+class LongSteps(Chain):
+    """Steps as long as slip events: a step may carry a block past the fall of its friction, where Newton's
+    method alone finds nothing."""
+    LAWS = {'coulomb': {'mu': 0.6},
+            'static_kinetic': {'mu_s': 0.6, 'mu_k': 0.3, 'd_c': 2},
+            'subloading': {'mu_s': 0.6, 'mu_k': 0.5, 'kappa': 26, 'xi': 1.7, 'm': 40},
+            'slip_weakening': {'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.02},
+            'slip_weakening_healing': {'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.02, 'xi': 0.15},
+            'rate_and_state': {'a': 0.01, 'b': 0.02, 'd_c': 0.01, 'v0': 0.01, 'f0': 0.6},
+            'flash_heating': {'a': 0.01, 'b': 0.014, 'd_c': 0.01, 'v0': 0.01, 'f0': 0.6, 'f_w': 0.2, 'v_w': 1},
+            'linker_dieterich': {'a': 0.01, 'b': 0.02, 'd_c': 0.01, 'v0': 0.01, 'f0': 0.6, 'alpha': 0.2}}
+
+    def test_each_step_ends_in_a_balance_of_forces(self):
+        mass = 1e-3
+        for law, constants in self.LAWS.items():
+            friction = {'law': f"'{law}'", 'alpha_n': 50, 'alpha_t': 500, **constants}
+            for blocks, ends, coupling in ((9, 'free', 1), (9, 'periodic', 30), (8, 'periodic', 1), (1, 'free', 1)):
+                with self.subTest(law=law, blocks=blocks, ends=ends):
+                    groups = {'friction': friction,
+                              'slider': {'mass': mass, 'stiffness': 1, 'normal_traction': 1},
+                              'drive': {'velocity': 0.2, 'normal_amplitude': 0.9, 'normal_frequency': 0.1},
+                              'time': {'t_end': 30, 'dt': 0.3},
+                              'chain': {'n_blocks': blocks, 'coupling': coupling, 'scatter': 0.3,
+                                        'ends': f"'{ends}'", 'slip_rate': 0.2}}
+                    result = self.run_text(''.join(f'&{group}\n' + ''.join(f'{key} = {value}\n' for key, value in
+                                                   keys.items()) + '/\n' for group, keys in groups.items()), '--no-plot')
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    rows = self.rows('case_out/case.csv')
+                    self.assertEqual(len(rows), 101)
+                    for row in rows:   # means over the blocks: what couples them cancels
+                        spring, friction_force, acceleration = (
+                            float(row[key]) for key in ('spring_force', 'friction_force', 'acceleration'))
+                        self.assertAlmostEqual(spring, friction_force + mass * acceleration, delta=1e-8)
+
+
 class LongChain(Chain):
     def test_the_number_of_threads_changes_no_bit(self):
         """More parts than it takes for two threads to share them, through the first events."""

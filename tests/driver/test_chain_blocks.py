@@ -85,8 +85,10 @@ class Motion(OwnConstants):
         for changes in ({}, {**{('friction', key): "'@profile.csv'" for key in keys},
                              ('slider', 'normal_traction'): "'@profile.csv'"}):
             self.run_chain({**changes, ('chain', 'displacement_scatter'): '0.1', ('output', 'fields'): '50'})
-            found.append([(self.folder / 'case_out' / name).read_bytes()
-                          for name in ('case.csv', 'case_events.csv', 'case_fields.bin')])
+            fields = sorted((self.folder / 'case_out').glob('case_fields*'))
+            self.assertGreater(len(fields), 0)
+            found.append([path.read_bytes() for path in (self.folder / 'case_out/case.csv',
+                                                         self.folder / 'case_out/case_events.csv', *fields)])
         self.assertEqual(found[0], found[1])
 
     def test_the_strong_block_holds_the_others_back(self):

@@ -1,9 +1,12 @@
 """The verb fault: a benchmark, restarts, any number of processes, input that is wrong."""
+import contextlib
 import csv
 import filecmp
 import math
 import os
 import pathlib
+import pty
+import select
 import shutil
 import signal
 import subprocess
@@ -94,17 +97,20 @@ class FaultTest(unittest.TestCase):
         for name in names:
             self.assertTrue(filecmp.cmp(self.place / a / name, self.place / b / name, shallow=False), name)
 
-    def kill_and_resume(self, name, seconds, processes, then_processes):
-        self.kill(name, seconds, processes)
+    def kill_and_resume(self, name, seconds, processes, then_processes, checkpoints=2):
+        self.kill(name, seconds, processes, checkpoints)
         self.resume(name, then_processes)
 
-    def kill(self, name, seconds, processes):
-        """Kills a run some time after its first checkpoint."""
+    def kill(self, name, seconds, processes, checkpoints=2):
+        """Kills a run some time after its first checkpoint, that of its start, or a later one."""
         shutil.rmtree(self.place / 'parts', ignore_errors=True)
         run = subprocess.Popen(self.command(processes, name, '--output', 'parts', '--quiet'), cwd=self.place,
                                env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while not (self.place / 'parts' / 'case.checkpoint').exists() and run.poll() is None:
-            time.sleep(0.005)
+        seen = set()
+        while len(seen) < checkpoints and run.poll() is None:
+            with contextlib.suppress(FileNotFoundError):
+                seen.add((self.place / 'parts' / 'case.checkpoint').stat().st_mtime_ns)
+            time.sleep(0.002)
         time.sleep(seconds)
         for process in descendants(run.pid):
             os.kill(process, signal.SIGKILL)
@@ -194,6 +200,38 @@ class Processes(FaultTest):
                 self.assertEqual(fields[field], whole[1][field][:len(times)])
             self.resume(name, then)
 
+    def test_ctrl_c_at_a_launchers_terminal_leaves_a_checkpoint(self):
+        """Open MPI ends its processes some time after Ctrl-C, and with 0 s at once: no step is done by then."""
+        name = self.write(SMALL.replace('checkpoint = 0', 'checkpoint = 3600').replace('1.0e10', '1.0e13'))
+        for seconds in ('1', '0'):
+            shutil.rmtree(self.place / 'parts', ignore_errors=True)
+            self.press_ctrl_c(self.command(2, name, '--output', 'parts'), seconds)
+            table = self.place / 'parts' / 'case_global.csv'
+            before = table.stat().st_size
+            run = subprocess.Popen(self.command(1, name, '--output', 'parts', '--quiet', '--resume'), cwd=self.place,
+                                   stderr=subprocess.PIPE, text=True)
+            while table.stat().st_size == before and run.poll() is None:   # rows are cut off, and written again
+                time.sleep(0.01)
+            run.send_signal(signal.SIGINT)
+            self.assertIn('--resume goes on', run.communicate()[1])
+
+    def press_ctrl_c(self, command, seconds):
+        """Runs a command at a terminal of its own until it has a checkpoint, and presses Ctrl-C."""
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.chdir(self.place)
+            os.execvpe(command[0], command, dict(ENVIRONMENT, OMPI_MCA_odls_base_sigkill_timeout=seconds))
+        checkpoint = self.place / 'parts' / 'case.checkpoint'
+        patience = time.monotonic() + 60
+        while not checkpoint.exists() and time.monotonic() < patience:
+            select.select([terminal], [], [], 0.005)
+        os.write(terminal, b'\x03')
+        with contextlib.suppress(OSError):   # the other end is closed
+            while os.read(terminal, 4096):
+                pass
+        os.waitpid(pid, 0)
+        self.assertTrue(checkpoint.exists())
+
 
 class Restart(FaultTest):
     def test_killed_runs_go_on_to_the_same_files(self):
@@ -201,6 +239,11 @@ class Restart(FaultTest):
         self.run_fault(name, '--output', 'whole', '--quiet')
         for seconds in (0.0, 0.03, 0.1):
             self.kill_and_resume(name, seconds, 1, 1)
+        for text in (LONG, SUBLOADING.replace('1.5e10', '1e9')):   # from the checkpoint of the start
+            name = self.write(text.replace('checkpoint = 0', 'checkpoint = 3600'))
+            shutil.rmtree(self.place / 'whole')
+            self.run_fault(name, '--output', 'whole', '--quiet')
+            self.kill_and_resume(name, 0.05, 1, 1, checkpoints=1)
 
     def test_interrupted_run_says_how_to_go_on(self):
         name = self.write(SMALL.replace('1.0e10', '1.0e13'))

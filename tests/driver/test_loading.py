@@ -231,6 +231,85 @@ class Balance(Columns):
                 self.assertLess(abs(spring - friction - 10 * a), 1e-10 * (abs(spring) + abs(friction) + 10 * abs(a)))
 
 
+class Opening(Columns):
+    """A normal traction below zero opens the contact, and cohesion ends with it."""
+    laws = ("law='coulomb', mu=0.6", "law='subloading', mu_s=0.6, mu_k=0.5, kappa=26, xi=1.7, m=40",
+            "law='slip_weakening_healing', mu_s=0.7, mu_k=0.3, d_c=0.2, xi=0.15",
+            "law='rate_and_state', a=0.01, b=0.014, d_c=0.01, v0=0.01, f0=0.6")
+
+    def test_adaptive_steps_agree_with_small_fixed_ones_and_nothing_is_carried_while_it_is_open(self):
+        for law in self.laws:
+            for cohesion in (0, 0.2):
+                with self.subTest(law=law, cohesion=cohesion):
+                    text = (f'&friction {law}, alpha_n=50, alpha_t=500, cohesion={cohesion} /\n&slider mass=0.01, stiffness=1, '
+                            'damping=0.05, normal_traction=1 /\n&drive velocity=0.2, normal_amplitude=1.2, normal_frequency=0.1 /\n')
+                    fixed = self.run_columns(text + '&time t_end=20, dt=1e-3 /\n&output interval=100 /\n')
+                    adaptive = self.run_columns(text + '&time t_end=20, rtol=1e-7 /\n&output every=0.1 /\n')
+                    self.assertEqual(len(fixed['time']), len(adaptive['time']))
+                    opened = 0
+                    for row, one in enumerate(fixed['spring_force']):   # an error in time of dt at each opening
+                        self.assertAlmostEqual(one, adaptive['spring_force'][row], delta=1e-3)
+                        for run in (fixed, adaptive):
+                            self.assertGreaterEqual(run['normal_traction'][row], 0)
+                            if 1 + 1.2 * math.sin(0.2 * math.pi * run['time'][row]) < -1e-3:
+                                opened += 1
+                                self.assertEqual((run['friction_force'][row], run['normal_traction'][row]), (0, 0))
+                    self.assertGreater(opened, 50)
+
+    def test_a_closed_contact_without_normal_traction_carries_its_cohesion(self):
+        for time in ('dt=1e-3', 'rtol=1e-6'):
+            run = self.run_columns("&friction law='coulomb', alpha_n=50, alpha_t=500, mu=0.6, cohesion=0.2 /\n&slider mass=0.01, "
+                                   'stiffness=1, damping=1 /\n&drive velocity=0.2, normal=0 /\n&time t_end=20, ' + time + ' /\n')
+            self.assertAlmostEqual(run['friction_force'][-1], 0.2, delta=1e-9)
+
+
+class Units(Columns):
+    """The same slider in other units of force, length and time, powers of two, has the same motion to the last bit."""
+    units = {'alpha_n': (1, -3, 0), 'alpha_t': (1, -3, 0), 'kappa': (0, -1, 0), 'xi': (0, 0, -1), 'm': (0, -1, 0),
+             'cohesion': (1, -2, 0), 'tau_max': (1, -2, 0), 'eta_t': (1, -3, 1), 'mass': (1, -1, 2), 'stiffness': (1, -1, 0),
+             'damping': (1, -1, 1), 'area': (0, 2, 0), 'normal_traction': (1, -2, 0), 'velocity': (0, 1, -1),
+             'duration': (0, 0, 1), 't_end': (0, 0, 1), 'dt': (0, 0, 1), 'normal_amplitude': (1, -2, 0),
+             'normal_frequency': (0, 0, -1), 'd_c': (0, 1, 0)}
+    columns = {'time': (0, 0, 1), 'drive': (0, 1, 0), 'displacement': (0, 1, 0), 'velocity': (0, 1, -1),
+               'acceleration': (0, 1, -2), 'spring_force': (1, 0, 0), 'friction_force': (1, 0, 0), 'mu': (0, 0, 0),
+               'R': (0, 0, 0), 'D': (0, 1, 0), 'slip': (0, 1, 0), 'normal_traction': (1, -2, 0)}
+    events = {'onset': (0, 0, 1), 'duration': (0, 0, 1), 'stress_drop': (1, -2, 0), 'slip': (0, 1, 0),
+              'peak_velocity': (0, 1, -1), 'recurrence_time': (0, 0, 1)}
+    cases = (
+        ({'law': "'coulomb'", 'mu': 0.5, 'cohesion': 0.25}, {'normal_amplitude': 1.25, 'normal_frequency': 0.3}, {'dt': 2e-3}),
+        ({'mu_s': 0.6, 'mu_k': 0.4, 'kappa': 10, 'xi': 0.3, 'm': 100}, {}, {'dt': 1e-2}),
+        ({'mu_s': 0.6, 'mu_k': 0.4, 'kappa': 10, 'xi': 0.3, 'm': 100, 'tau_max': 0.55, 'eta_t': 0.1}, {}, {'dt': 2e-3}),
+        ({'law': "'slip_weakening_healing'", 'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.02, 'xi': 0.15}, {}, {'dt': 1e-3}),
+        ({'law': "'slip_weakening_healing'", 'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.2, 'xi': 0.15},
+         {'normal_amplitude': 0.5, 'normal_frequency': 0.3}, {'rtol': 1e-5}))
+
+    def test_scaled_runs_are_the_same(self):
+        for friction, drive, steps in self.cases:
+            groups = {'friction': {'alpha_n': 50, 'alpha_t': 300, **friction},
+                      'slider': {'mass': 0.01, 'stiffness': 1, 'damping': 0.02, 'area': 1, 'normal_traction': 1},
+                      'drive': {'velocity': 0.3, **drive}, 'time': {'t_end': 8, **steps}}
+            with self.subTest(friction=friction):
+                first = self.tables(groups, (0, 0, 0))
+                self.assertGreater(len(first[1]), 0)
+                for shift in ((11, -7, 5), (-20, 24, -17)):
+                    for table, other in zip(first, self.tables(groups, shift)):
+                        self.assertEqual(table, other)
+
+    def tables(self, groups, shift):
+        """Series and events of a run in units of 2^-shift, in the old units."""
+        def exponent(unit):
+            return sum(map(lambda power, by: power * by, unit, shift))
+
+        def number(key, value):
+            return value if isinstance(value, str) else repr(math.ldexp(value, exponent(self.units.get(key, (0, 0, 0)))))
+        self.assert_done(self.run_text(''.join(
+            f'&{group}\n' + ''.join(f'{key} = {number(key, value)}\n' for key, value in keys.items()) + '/\n'
+            for group, keys in groups.items()), '--no-plot'))
+        return [[[key, math.ldexp(float(value), -exponent(units[key]))] for row in self.rows(f'case_out/{name}')
+                 for key, value in row.items() if value != 'NaN'] for name, units in
+                (('case.csv', self.columns), ('case_events.csv', self.events))]
+
+
 RADAU_ONSETS = (37847148.4, 322538406.0, 606768808.0, 890999216.0, 1175229620.0, 1459460030.0, 1743690430.0, 2027920840.0,
                 2312151250.0, 2596381650.0, 2880612060.0)
 
@@ -495,11 +574,17 @@ class AdaptiveSteps(Columns):
         self.assertIn('steps as short as dt_min', result.stderr)
 
     def test_opening_and_closing_are_met_exactly(self):
-        run = self.run_columns(namelist({('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5',
-                                         ('time', 'rtol'): '1e-4', ('time', 't_end'): '0.4'}, [('time', 'dt')]))
-        # 10 + 20 sin(10 pi t) = 0 at sin = -1/2
-        for t in (7 / 60, 11 / 60, 7 / 60 + 0.2):
-            self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
+        loads = {('drive', 'normal_amplitude'): '20', ('drive', 'normal_frequency'): '5', ('time', 'rtol'): '1e-4',
+                 ('time', 't_end'): '0.4'}
+        # the subloading law has the contact open up to 1e-6 of the largest normal traction
+        for text, pressure in ((namelist(loads, [('time', 'dt'), ('friction', None)])
+                                + "&friction law='coulomb', alpha_n=1e3, alpha_t=1e3, mu=0.3 /\n", 0),
+                               (namelist(loads, [('time', 'dt')]), 30e-6)):
+            run = self.run_columns(text)
+            # 10 + 20 sin(10 pi t) = 0 at sin = -1/2, with a slope of 100 sqrt(3) pi
+            for t, rises in ((7 / 60, -1), (11 / 60, 1), (7 / 60 + 0.2, -1)):
+                t += rises * pressure / (100 * math.sqrt(3) * math.pi)
+                self.assertLess(min(abs(t - time) for time in run['time']), 1e-12)
 
     def test_a_touchdown_in_full_flight_is_met_at_any_tolerance(self):
         # that moves past the base: a part of a step that ends behind the touchdown would slip all the way

@@ -68,8 +68,8 @@ contains
             answer%dissipated(1), answer%dissipated(2), answer%dissipated(3), &
             answer%dissipated(4), answer%pnewdt, rdisp, drdisp, zero, zero, zero, zero, zero, &
             dtime, 0.0_dp, name, name, name, props, zero, zero, drot, 1.0_dp, 1.0_dp, 1, &
-            size(rdisp), n_statev, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, answer%state, &
-            answer%severe, 0)
+            size(rdisp), n_statev, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, &
+            answer%state, answer%severe, 0)
     end subroutine call_uinter
 
     subroutine call_umat(ndi, nshr, props, dstran, dtime, drot, statev, stress, ddsdde, answer, &
@@ -91,8 +91,8 @@ contains
         end if
         call umat(stress, statev, ddsdde, answer%sse, answer%spd, scd, rpl, zero, zero, zero, &
             zero, dstran, zero, dtime, 0.0_dp, 0.0_dp, zero, zero, name, ndi, nshr, ndi + nshr, &
-            n_statev, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, gradient, 1, 1, 1, 1, &
-            step, 1)
+            n_statev, props, size(props), zero, drot, answer%pnewdt, 1.0_dp, zero, gradient, 1, 1, &
+            1, 1, step, 1)
     end subroutine call_umat
 
 end module abaqus_standard_calls
