@@ -3,11 +3,11 @@
 module law_facts
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : facts => law_facts, friction_facts, friction_internal_variable, &
-        friction_law_of, library_variable => internal_variable
+        friction_law_of, friction_place, library_variable => internal_variable
     implicit none
     private
 
-    public :: cohesion, has_r, internal_variable, typical_strength
+    public :: cohesion, cohesion_of_each, has_r, internal_variable, typical_strength, virgin_mu
 
 contains
 
@@ -52,5 +52,28 @@ contains
         law = friction_facts(props)
         traction = law%cohesion
     end function cohesion
+
+    !> The same of many points. Its place is asked for once: asking for all facts of each point
+    !> takes longer than a step.
+    pure function cohesion_of_each(constants) result(tractions)
+        real(dp), intent(in) :: constants(:, :)   !! of one law, one row a point; options that are
+                                                  !! left out at the end are not there
+        real(dp) :: tractions(size(constants, 1)) !! [F/L^2]
+        integer :: place
+
+        tractions = 0.0_dp
+        place = friction_place(friction_law_of(constants(1, :)), 'cohesion')
+        if (place >= 1 .and. place <= size(constants, 2)) tractions = constants(:, place)
+    end function cohesion_of_each
+
+    !> Friction coefficient of a virgin contact.
+    pure function virgin_mu(props) result(mu)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp) :: mu                     !! [-]
+        type(facts) :: law
+
+        law = friction_facts(props)
+        mu = law%virgin_mu
+    end function virgin_mu
 
 end module law_facts

@@ -10,14 +10,14 @@ module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : facts => law_facts, friction_facts, friction_ok, &
-        friction_snap_back, friction_update, friction_update_batch, prop_alpha_n, prop_alpha_t, &
-        statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, statev_u_n
-    use law_facts, only : cohesion
+    use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
+        friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
+        statev_r, statev_size, statev_u_et, statev_u_n
+    use law_facts, only : cohesion, cohesion_of_each, virgin_mu
     implicit none
     private
 
-    public :: apply_normal_traction, blend, displace, energy_balance, friction_forces, &
+    public :: apply_normal_traction, blend, cohesions, displace, energy_balance, friction_forces, &
         initial_state, initial_values, normal_motion, place, set_accelerations, slider, &
         slider_state, swap_states
 
@@ -135,21 +135,19 @@ contains
         type(initial_values), intent(in) :: values
         type(slider_state), intent(inout) :: state   !! as `initial_state` left it
         real(dp), dimension(size(state%x)) :: mu, held, alpha_t
-        type(facts) :: law
         integer :: i
 
         if (.not. values%any_given) return
         state%x = values%displacement
         state%v = values%velocity
         mu = values%mu
-        held = cohesion(system%props)
+        held = cohesions(system, size(mu))
         alpha_t = system%props(prop_alpha_t)
         if (allocated(system%constants)) then
+            alpha_t = system%constants(:, prop_alpha_t)
             do i = 1, size(mu)
-                law = friction_facts(system%props_of(i))
-                if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
-                held(i) = law%cohesion
-                alpha_t(i) = law%alpha_t
+                if (values%has_r .and. .not. values%mu_given) mu(i) = virgin_mu( &
+                    system%constants(i, :))
             end do
         end if
         state%statev(:, statev_mu) = mu
@@ -189,6 +187,19 @@ contains
             props = self%props
         end if
     end function props_of
+
+    !> Traction that the contact of each block carries without pressure.
+    pure function cohesions(system, n) result(held)
+        type(slider), intent(in) :: system
+        integer, intent(in) :: n   !! blocks
+        real(dp) :: held(n)        !! [F/L^2]
+
+        if (allocated(system%constants)) then
+            held = cohesion_of_each(system%constants)
+        else
+            held = cohesion(system%props)
+        end if
+    end function cohesions
 
     !> Does the block move across the interface by itself?
     pure function free(self) result(yes)

@@ -210,8 +210,8 @@ contains
             end do
             reached = self%work%dx
             call iterate(self, system, old, new, report, balanced)
-            if (report%status < 0 .or. balanced) return
-            self%work%dx = reached
+            if (balanced) return
+            self%work%dx = reached   ! wherever that has led, be it out of range
             call evaluate(self, system, old, new, report)
         end do
     end subroutine search
@@ -243,7 +243,7 @@ contains
             do i = first, last, 2
                 brackets(i) = root_bracket(sense=sign(1.0_dp, w%residual(i)), low=w%dx(i), &
                     stride=w%residual(i) / (w%matrix%diagonal(i) + (1.0_dp - self%alpha_f) &
-                    * system%area * stiffest))
+                    * (system%area * stiffest - w%tangent(i))))
             end do
             do evaluation = 1, most_evaluations
                 balanced = .true.

@@ -2,8 +2,7 @@
 module turning_times
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_healing_rate, statev_mu, statev_size, statev_u_et
-    use law_facts, only : cohesion
-    use slider_system, only : slider, slider_state
+    use slider_system, only : cohesions, slider, slider_state
     implicit none
     private
 
@@ -13,11 +12,12 @@ contains
 
     !> Velocity at which the traction of block `i` grows no faster than its strength: slower, it
     !> sticks. Nearly zero, but for a contact that heals or is being loaded.
-    pure function sticking_velocity(system, state, i, loading) result(velocity)
+    pure function sticking_velocity(system, state, i, loading, cohesion) result(velocity)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: state
         integer, intent(in) :: i
-        real(dp), intent(in) :: loading   !! growth of the normal traction, part of it [1/T]
+        real(dp), intent(in) :: loading    !! growth of the normal traction, part of it [1/T]
+        real(dp), intent(in) :: cohesion   !! of the block [F/L^2]
         real(dp) :: velocity              !! [L/T]
         real(dp) :: pressure, resting(statev_size)   ! state variables of the block at rest
 
@@ -29,7 +29,7 @@ contains
             resting(statev_mu) = mu
             if (mu * pressure > 0.0_dp) velocity = state%statev(i, statev_u_et) &
                 * (friction_healing_rate(system%props_of(i), resting) + mu * loading) / (mu &
-                + cohesion(system%props_of(i)) / pressure)
+                + cohesion / pressure)
         end associate
     end function sticking_velocity
 
@@ -39,17 +39,18 @@ contains
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: a, b
         real(dp) :: time   !! [T]
-        real(dp) :: dt, loading, v_a, v_b, low, high, s
+        real(dp) :: dt, loading, v_a, v_b, low, high, s, cohesion(size(a%x))
         integer :: i, k
 
         time = huge(time)
+        cohesion = cohesions(system, size(cohesion))
         dt = b%time - a%time
         loading = 0.0_dp
         if (a%normal > 0.0_dp .and. b%normal > 0.0_dp) loading = 2.0_dp * (b%normal - a%normal) &
             / (dt * (a%normal + b%normal))
         do i = 1, size(a%x)
-            v_a = a%v(i) - sticking_velocity(system, a, i, loading)
-            v_b = b%v(i) - sticking_velocity(system, b, i, loading)
+            v_a = a%v(i) - sticking_velocity(system, a, i, loading, cohesion(i))
+            v_b = b%v(i) - sticking_velocity(system, b, i, loading, cohesion(i))
             if (v_a * v_b >= 0.0_dp) cycle
             low = 0.0_dp
             high = 1.0_dp

@@ -148,6 +148,33 @@ class Motion(Chain):
         self.assertEqual(found[0], found[1])
         self.assertNotEqual(found[0], found[2])
 
+    def test_a_balance_is_found_where_newtons_method_does_not_settle(self):
+        # friction that drops at once, in long steps; without coupling as of single blocks (Newton's tolerance, grown in events)
+        text = """&friction law='static_kinetic' alpha_n=100 alpha_t=100 mu_s=1 mu_k=0.3 d_c=30 /
+&slider mass=1 stiffness=1 normal_traction={} /
+&drive velocity=0.05 /
+&chain n_blocks={} coupling={} scatter={} slip_rate=0.1 /
+&time t_end=60 dt={} tolerance=1e-13 {} /
+&output interval=1 {} /
+"""
+        for coupling, dt, more in (('4', '0.2', ''), ('36', '0.2', ''), ('4', '0.5', ''), ('36', '0.5', 'rho_infinity=0')):
+            self.assert_done(self.run_text(text.format('1', '20', coupling, '0.3', dt, more, ''), '--no-plot'))
+        # where friction falls faster than the contact spring unloads, a block must still go the way it is pulled
+        self.assert_done(self.run_text("""&friction law='slip_weakening' alpha_n=100 alpha_t=3597.1 mu_s=1 mu_k=0.3 d_c=6.014e-4 /
+&slider mass=1 stiffness=1 normal_traction=1 /
+&drive velocity=0.45163498 normal_amplitude=1.2 normal_frequency=0.1 /
+&chain n_blocks=100 coupling=149.39539 ends='fixed' scatter=0.9 slip_rate=0.1 /
+&time t_end=60 dt=0.1535096590150057 rho_infinity=0.5 /
+""", '--no-plot'))
+        self.assert_done(self.run_text(text.format('1', '3', '0', '0.3', '0.2', '', 'fields=1'), '--no-plot'))
+        slips = self.slips(3)
+        loads = [float(row['load_factor']) for row in self.rows('case_out/case_blocks.csv')]
+        for block, load in enumerate(loads):
+            self.assert_done(self.run_text(text.format(repr(load), '1', '0', '0', '0.2', '', ''), '--no-plot'))
+            single = [row[9] for row in self.series()]
+            self.assertGreater(single[-1], 1)
+            self.assertLess(max(abs(a - row[block]) for a, row in zip(single, slips)), 1e-5)   # undamped contacts amplify round-off: 4e-7
+
     def test_adaptive_steps_agree_with_small_fixed_ones(self):
         late = []
         for change in ({('time', 'dt'): '5e-5', ('output', 'interval'): '1000000'},
