@@ -335,8 +335,48 @@ static void texts_are_constant_c_strings(void)
     CHECK(strcmp(friction_version(), EXPECTED_VERSION) == 0);
 }
 
+/* Of each size in turn one below zero: a code, from every function, and nothing is touched. A size of zero is one that
+ * is too small, or no point at all. */
+static void sizes_below_zero_are_told(void)
+{
+    double statev[8] = {1, -1e-2, 0, 0, 0.3, 0, 0, 0}, traction[3] = {7, 7, 7}, tangent[9], rates[8], du[3] = {0};
+    double theta = 1, v = 7, theta_rate, tau = 1, pressure = 1;
+    const double before = statev[1], creep[8] = {4, 1, 1, 0.01, 0.015, 1e-2, 1e-6, 0.6};
+    int status[1] = {0}, place;
+
+    for (place = 0; place < 4; place++) {
+        const int n = place == 0 ? -1 : 1, ndir = place == 1 ? -1 : 3;
+        const int nprops = place == 2 ? -1 : 9, nstatv = place == 3 ? -1 : 8;
+
+        CHECK(friction_update_batch(n, ndir, du, 0.1, nprops, props, nstatv, statev, traction, tangent, status)
+            == FRICTION_BAD_SIZE);
+        CHECK(friction_update_batch_props(n, ndir, du, 0.1, nprops, props, nstatv, statev, traction, tangent, status)
+            == FRICTION_BAD_SIZE);
+        CHECK(friction_update_points(n, ndir, du, 0.1, nprops, props, nstatv, statev, traction, tangent, status)
+            == FRICTION_BAD_SIZE);
+        if (place == 0) {
+            CHECK(friction_slip_rates(n, &tau, &pressure, 0, 8, creep, &theta, &v, &theta_rate, status)
+                == FRICTION_BAD_SIZE);
+            CHECK(friction_slip_rates(1, &tau, &pressure, 0, n, creep, &theta, &v, &theta_rate, status)
+                == FRICTION_BAD_SIZE);
+            continue;
+        }
+        CHECK(friction_update(ndir, du, 0.1, nprops, props, nstatv, statev, traction, tangent) == FRICTION_BAD_SIZE);
+        CHECK(friction_tangential(ndir == 3 ? 2 : -1, du, 1, 0.1, nprops, props, nstatv, statev, traction, tangent, du)
+            == FRICTION_BAD_SIZE);
+        CHECK(friction_rates(ndir, du, nprops, props, nstatv, statev, rates) == FRICTION_BAD_SIZE);
+    }
+    CHECK(friction_update_batch(0, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+    CHECK(friction_update_batch_props(0, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+    CHECK(friction_update_points(0, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+    CHECK(friction_slip_rates(0, &tau, &pressure, 0, 8, creep, &theta, &v, &theta_rate, status) == FRICTION_OK);
+    CHECK(traction[0] == 7 && traction[1] == 7 && traction[2] == 7 && statev[1] == before && v == 7);
+    CHECK(friction_update_batch_props(1, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status) == FRICTION_OK);
+}
+
 int main(void)
 {
+    sizes_below_zero_are_told();
     update_slides_on_the_subloading_surface();
     tangential_is_the_same_with_the_pressure_handed_in();
     a_batch_is_component_major();
