@@ -35,6 +35,7 @@ module friction_rate_state_evolution
         real(wp) :: x_n(lanes)          !! X of the core less ln(slip), for that
         real(wp) :: pressed(lanes)      !! what a change of the pressure takes from ln(theta)
         real(wp) :: ln_v_w(lanes), f0(lanes), f_w(lanes), n(lanes)   !! of `heating`
+        real(wp) :: ln_most(lanes)      !! ln of the slip that takes all of the traction
         real(wp) :: several(lanes)      !! above 0 where several equilibria are possible
     end type evolution
 
@@ -205,9 +206,10 @@ contains
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(in) :: block
         type(evolution), intent(inout) :: now
+        integer, parameter :: short = 10   !! ranges of slips up to 0.022 d_c
         real(wp), dimension(lanes) :: t, k, may
         real(wp) :: longest
-        integer :: i, j
+        integer :: i, j, first
 
         if (.not. now%heats) then
             call find_by_one_bound(constants, block, now)
@@ -228,7 +230,11 @@ contains
             call look_at_heating(longest, t, k, block%n, now)
             return
         end if
-        do j = 1, size(ranges)
+        ! the shortest slips as one, which is as good as a rule
+        call look_for_turns(joined(ranges(1), ranges(short)), k, block, now, may)
+        first = 1
+        if (all(may(:block%n) <= 0.0_wp)) first = short + 1
+        do j = first, size(ranges)
             if (ranges(j)%from > longest) exit
             call look_for_turns(ranges(j), k, block, now, may)
             if (any(may(:block%n) > 0.0_wp)) call look_for_roots(ranges(j), t, k, block, now, may)
@@ -242,17 +248,15 @@ contains
     pure subroutine find_by_one_bound(constants, block, now)
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(in) :: block
-        type(evolution), intent(inout) :: now   !! fall of ln(theta) with slip/d_c: `fastest`
-        real(wp), dimension(lanes) :: left, x, ln_x, fastest
+        type(evolution), intent(inout) :: now
+        real(wp), dimension(lanes) :: left, x
+        real(wp) :: fastest(lanes)   ! fall of ln(theta) with slip/d_c
         real(wp) :: pull
         integer :: i
 
         do i = 1, block%n
             x(i) = (block%trial(i) / block%stiffness(i)) * now%per_d_c(i)
             left(i) = exp(-x(i))
-        end do
-        do i = 1, block%n
-            ln_x(i) = log(x(i))
         end do
         if (now%ages .and. now%presses) then
             call bound_pressed(block, now, x, left, fastest)
@@ -263,7 +267,7 @@ contains
             end do
         else
             do i = 1, block%n
-                pull = now%ln_dt - ln_x(i) - now%ln_theta_n(i)
+                pull = now%ln_dt - (now%ln_most(i) - now%ln_d_c(i)) - now%ln_theta_n(i)
                 fastest(i) = 1.0_wp - pull * merge(left(i), 1.0_wp, pull > 0.0_wp)
                 if (now%presses) fastest(i) = fastest(i) + 0.5_wp * max(0.0_wp, -now%pressed(i))
             end do

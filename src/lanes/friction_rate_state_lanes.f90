@@ -170,9 +170,10 @@ contains
         call prepare_evolution(kind, constants, dt, block, state)
         call find_exponents(constants, block%n, state)
         do i = 1, block%n
-            now%high(i) = log(block%trial(i) / block%stiffness(i))
+            state%ln_most(i) = log(block%trial(i) / block%stiffness(i))
         end do
         do i = 1, block%n
+            now%high(i) = state%ln_most(i)
             now%low(i) = state%ln_d_c(i) + ln_least_slip
             now%u_0(i) = state%x_n(i) - state%b_over_a(i) * state%ln_theta_n(i)
         end do
