@@ -1,16 +1,34 @@
 !> Many contact points, each point's numbers side by side (public name and arguments: module
 !> friction_mod). Blocks of points are transposed, in cache, around the batch routine.
 submodule(friction_mod:friction_batch) friction_points
+    use friction_lane_block, only : apart
     use friction_threads, only : worth_threads
     implicit none
-
-    !> From one component to the next in the transposed block: a power of two would crowd into few
-    !> lines of the cache.
-    integer, parameter :: apart = lanes + line
 
     !> The block's columns: first ones of each array.
     integer, parameter :: at_du = 1, at_statev = at_du + 3, at_traction = at_statev + statev_size, &
         at_tangent = at_traction + 3, columns = at_tangent + 8
+
+    interface
+        !> See module friction_points_kernel.
+        subroutine points_kernel_in(du, statev, du_block, statev_block) &
+            bind(C, name='stickslip_points_kernel_in')
+            import :: apart, c_double, lanes
+            implicit none
+            real(c_double), intent(in) :: du(3, lanes), statev(8, lanes)
+            real(c_double), intent(inout) :: du_block(apart, 3), statev_block(apart, 8)
+        end subroutine points_kernel_in
+
+        subroutine points_kernel_out(statev_block, traction_block, tangent_block, statev, &
+            traction, tangent) bind(C, name='stickslip_points_kernel_out')
+            import :: apart, c_double, lanes
+            implicit none
+            real(c_double), intent(in) :: statev_block(apart, 8), traction_block(apart, 3)
+            real(c_double), intent(in) :: tangent_block(apart, 3, 3)
+            real(c_double), intent(inout) :: statev(8, lanes), traction(3, lanes)
+            real(c_double), intent(inout) :: tangent(3, 3, lanes)
+        end subroutine points_kernel_out
+    end interface
 
 contains
 
@@ -94,15 +112,24 @@ contains
         real(wp), intent(inout) :: tangent(this%ndir, this%ndir, count)
         integer, intent(inout) :: status(count)
 
+        logical :: whole   ! a block in space, for the kernel
+
+        whole = this%ndir == 3 .and. count == lanes .and. nstatv == statev_size
         ! Loops whose lengths the compiler knows take less time.
-        if (this%ndir == 3) then
+        if (whole) then
+            call points_kernel_in(du, statev, block(1, at_du), block(1, at_statev))
+        else if (this%ndir == 3) then
             call to_lanes(3, count, nstatv, du, statev, block)
         else
             call to_lanes(2, count, nstatv, du, statev, block)
         end if
         call update_range(this, 1_int64, int(count, int64), block(1, at_du), props, &
             block(1, at_statev), block(1, at_traction), block(1, at_tangent), status)
-        if (this%ndir == 3) then
+        if (whole) whole = all(status >= 0)
+        if (whole) then
+            call points_kernel_out(block(1, at_statev), block(1, at_traction), &
+                block(1, at_tangent), statev, traction, tangent)
+        else if (this%ndir == 3) then
             call to_points(3, count, nstatv, status, block, statev, traction, tangent)
         else
             call to_points(2, count, nstatv, status, block, statev, traction, tangent)

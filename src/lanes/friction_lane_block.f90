@@ -16,6 +16,9 @@ module friction_lane_block
     integer, parameter, public :: lanes = 64   !! points of a block: its scratch data stay in the
                                                !! first-level cache
     integer, parameter, public :: widest = 8   !! lanes of the widest vectors
+    !> From one component to the next in a block that was transposed: a power of two would crowd
+    !> into few lines of the cache.
+    integer, parameter, public :: apart = lanes + 8
 
     !> Columns of the constants of a block's points.
     integer, parameter, public :: c_alpha_n = 1   !! [F/L^3]

@@ -52,6 +52,30 @@ void stickslip_batch_kernel(const void *task, const double *constants, const dou
     copies[instructions()](task, constants, du, statev, traction, tangent, left, n_left);
 }
 
+typedef void points_kernel_in(const double *du, const double *statev, double *du_block, double *statev_block);
+typedef void points_kernel_out(const double *statev_block, const double *traction_block, const double *tangent_block,
+                               double *statev, double *traction, double *tangent);
+
+points_kernel_in stickslip_points_kernel_in, stickslip_points_kernel_sse2_in, stickslip_points_kernel_avx2_in,
+    stickslip_points_kernel_avx512_in;
+points_kernel_out stickslip_points_kernel_out, stickslip_points_kernel_sse2_out, stickslip_points_kernel_avx2_out,
+    stickslip_points_kernel_avx512_out;
+
+void stickslip_points_kernel_in(const double *du, const double *statev, double *du_block, double *statev_block)
+{
+    static points_kernel_in *const copies[] = {stickslip_points_kernel_sse2_in, stickslip_points_kernel_avx2_in,
+                                               stickslip_points_kernel_avx512_in};
+    copies[instructions()](du, statev, du_block, statev_block);
+}
+
+void stickslip_points_kernel_out(const double *statev_block, const double *traction_block, const double *tangent_block,
+                                 double *statev, double *traction, double *tangent)
+{
+    static points_kernel_out *const copies[] = {stickslip_points_kernel_sse2_out, stickslip_points_kernel_avx2_out,
+                                                stickslip_points_kernel_avx512_out};
+    copies[instructions()](statev_block, traction_block, tangent_block, statev, traction, tangent);
+}
+
 void stickslip_constants_kernel(const void *source, int64_t stride, int count, const double *props, double *constants,
                                 int *left)
 {
