@@ -2,7 +2,7 @@
 module command_line
     use, intrinsic :: iso_fortran_env, only : error_unit
     use embedded_texts, only : get_text
-    use friction_mod, only : friction_version
+    use friction_mod, only : friction_law_count, friction_law_name, friction_version
     use platform, only : report
     implicit none
     private
@@ -178,10 +178,39 @@ contains
     subroutine print_help(to_error)
         logical, intent(in) :: to_error
         character(len=128), allocatable :: lines(:)
-        integer :: i
+        integer :: i, unit
 
         call get_text('help', lines)
-        write (merge(error_unit, report, to_error), '(a)') (trim(lines(i)), i = 1, size(lines))
+        unit = merge(error_unit, report, to_error)
+        do i = 1, size(lines)
+            if (lines(i) == '@laws@') then
+                call print_laws(unit)
+            else
+                write (unit, '(a)') trim(lines(i))
+            end if
+        end do
     end subroutine print_help
+
+    !> The names of all laws but the first, whose keys the help tells itself.
+    subroutine print_laws(unit)
+        integer, intent(in) :: unit
+        integer, parameter :: width = 85
+        character(len=*), parameter :: indent = repeat(' ', 13)
+        character(len=:), allocatable :: line, name
+        integer :: law
+
+        line = indent
+        do law = 2, friction_law_count
+            name = trim(friction_law_name(law))
+            if (law < friction_law_count) name = name // ','
+            if (len(line) + 1 + len(name) > width) then
+                write (unit, '(a)') line
+                line = indent
+            end if
+            if (len(line) > len(indent)) line = line // ' '
+            line = line // name
+        end do
+        write (unit, '(a)') line
+    end subroutine print_laws
 
 end module command_line

@@ -64,11 +64,35 @@ class Constant(NamedTuple):
     """What the library tells about a material constant."""
 
     name: str
+    unit: str
+    meaning: str
+    rule: str                #: 'must be > 0', ...
+    optional: bool
+    default: str             #: '0', 'mu_s', 'd_c/v0', ...; '' where there is none
     words: tuple[str, ...]   #: of a choice: those that stand for 0, 1, ...; else empty
 
 
 library.friction_get_default.argtypes = [_int, _pointer, _int, ctypes.POINTER(_double)]
 library.friction_check.argtypes = [_int, _pointer, _int, ctypes.c_char_p]
+
+
+def law_count() -> int:
+    """Laws are numbered from 1 to this."""
+    return library.friction_law_count()
+
+
+def law_name(law: int) -> str:
+    """The name of a law in the program's input."""
+    facts = _LawFacts()
+    library.friction_get_law(law, ctypes.byref(facts))
+    return facts.name.decode()
+
+
+def law_summary(law: int) -> str:
+    """What a law is, in words."""
+    text = ctypes.create_string_buffer(81)
+    library.friction_get_law_summary(law, len(text), text)
+    return text.value.decode()
 
 
 @functools.cache
@@ -79,8 +103,9 @@ def constants_of(law: int) -> tuple[Constant, ...]:
     found = []
     for place in range(1, facts.constants):
         library.friction_get_constant(law, place, ctypes.byref(constant))
-        words = constant.words.decode().replace(',', ' ').split() if constant.choice else []
-        found.append(Constant(constant.name.decode(), tuple(words)))
+        found.append(Constant(*(text.decode() for text in (constant.name, constant.unit, constant.meaning, constant.rule)),
+                              bool(constant.optional), constant.default_text.decode(),
+                              tuple(constant.words.decode().split()) if constant.choice else ()))
     return tuple(found)
 
 

@@ -1,37 +1,29 @@
 """The friction laws (docs/laws.md): named constants, checked by the library when an object is made.
 
-Every law takes the stiffnesses of the contact, ``alpha_n`` and ``alpha_t`` [F/L^3], its own constants, and the
-options of docs/law_options.md: ``tau_max``, a shear cap (0: none) [F/L^2]; ``mu_ratio``, the friction coefficient
-along the second tangential axis over that along the first; ``direction`` of slip there, ``'associated'`` or
-``'radial'``; ``cohesion``, a tangential traction without pressure [F/L^2]; ``eta_t``, a damper beside the tangential
-contact spring [F T/L^3]. A constant out of its range is a ValueError in the library's own words.
+There is a class for each law of the library, made from the library's own table when this module is loaded: `Subloading`,
+`Coulomb`, `StaticKinetic`, `RateAndState`, `SlipWeakening`, `SlipWeakeningHealing`, `FlashHeating`, `LinkerDieterich`;
+``help(stickslip.laws.Coulomb)`` tells its constants. Every law takes the stiffnesses of the contact, ``alpha_n`` and
+``alpha_t`` [F/L^3], its own constants, and the options of docs/law_options.md. A constant out of its range is a
+ValueError in the library's own words.
 """
 from __future__ import annotations
 
 import ctypes
 import dataclasses
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
 
-__all__ = ['AtPoints', 'Coulomb', 'FlashHeating', 'Law', 'LinkerDieterich', 'RateAndState', 'SlipWeakening', 'SlipWeakeningHealing',
-           'StaticKinetic', 'Subloading']
+__all__ = ['AtPoints', 'Law', 'classes']
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Law:
     """What all laws share. ``props`` are the constants in the order of the friction routine, read-only."""
 
-    alpha_n: float
-    alpha_t: float
-    tau_max: float = 0.0
-    mu_ratio: float = 1.0
-    direction: str = 'associated'
-    cohesion: float = 0.0
-    eta_t: float = 0.0
     props: np.ndarray = dataclasses.field(init=False, repr=False, compare=False)
 
     number: ClassVar[int]
@@ -133,143 +125,41 @@ class AtPoints:
                 raise ValueError(f'{type(self.law).__name__}, point {i}: {broken}')
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Subloading(Law):
-    """Time-dependent elastoplastic friction with a subloading surface (docs/theory.md).
-
-    mu_s, mu_k: static and kinetic friction coefficient [-]; kappa: loss of mu with slip [1/L]; xi: recovery of mu with
-    time [1/T]; m: how fast the surface passes from stick to slip [1/L]; mu_0: mu of a virgin point, default mu_s;
-    scheme: 'backward_euler', or 'exact_rate' for an exact integration over increments of constant slip rate; u_of_r:
-    'logarithm', 'cotangent' or 'reciprocal'.
-    """
-
-    mu_s: float
-    mu_k: float
-    kappa: float
-    xi: float
-    m: float
-    mu_0: float | None = None
-    scheme: str = 'backward_euler'
-    u_of_r: str = 'logarithm'
-
-    number = 1
-    name = 'subloading'
+def _field(constant: _library.Constant) -> tuple[str, Any, Any]:
+    """A constant as the field of a dataclass: its default is a number, a word, or None where it depends on others."""
+    if not constant.optional:
+        return constant.name, float, dataclasses.field()
+    if constant.words:
+        return constant.name, str, dataclasses.field(default=constant.default)
+    try:
+        return constant.name, float, dataclasses.field(default=float(constant.default))
+    except ValueError:
+        return constant.name, float | None, dataclasses.field(default=None)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Coulomb(Law):
-    """Friction proportional to the pressure. mu: friction coefficient [-]."""
-
-    mu: float
-
-    number = 2
-    name = 'coulomb'
+def _described(constant: _library.Constant) -> str:
+    """A constant in one line, for `help`."""
+    rule = ' or '.join(map(repr, constant.words)) or constant.rule.removeprefix('must be ')
+    default = f'; default {constant.default}' if constant.optional else ''
+    return f'{constant.name}: {constant.meaning} [{constant.unit}], {rule}{default}'
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class StaticKinetic(Law):
-    """mu = mu_k + (mu_s - mu_k) exp(-d_c v).
-
-    mu_s, mu_k: friction coefficient at rest and in fast sliding [-]; d_c: decay with the slip rate [T/L].
-    """
-
-    mu_s: float
-    mu_k: float
-    d_c: float
-
-    number = 3
-    name = 'static_kinetic'
+def _law_class(number: int) -> type[Law]:
+    """The class of a law: 'RateAndState' for 'rate_and_state'."""
+    name, constants = _library.law_name(number), _library.constants_of(number)
+    made = dataclasses.make_dataclass(
+        ''.join(word.capitalize() for word in name.split('_')), map(_field, constants), bases=(Law,), frozen=True, kw_only=True,
+        namespace={'number': number, 'name': name})
+    made.__module__ = __name__
+    made.__doc__ = '\n'.join([f'{_library.law_summary(number)}.', '', *map(_described, constants)])
+    return made
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class RateAndState(Law):
-    """Regularised rate-and-state friction.
+#: All laws by their names in the program's input.
+classes: dict[str, type[Law]] = {made.name: made for made in map(_law_class, range(1, _library.law_count() + 1))}
+globals().update({made.__name__: made for made in classes.values()})
+__all__ += [made.__name__ for made in classes.values()]
 
-    a, b: direct and evolution effect [-]; d_c: slip over which the state evolves [L]; v0: reference slip rate [L/T];
-    f0: friction coefficient of steady sliding at v0 [-]; evolution: 'ageing' or 'slip' law; theta_0: state of a virgin
-    point, default d_c/v0 [T].
-    """
-
-    a: float
-    b: float
-    d_c: float
-    v0: float
-    f0: float
-    evolution: str = 'ageing'
-    theta_0: float | None = None
-
-    number = 4
-    name = 'rate_and_state'
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class SlipWeakening(Law):
-    """mu falls with slip, linearly, from mu_s to mu_k, and stays there.
-
-    mu_s, mu_k: friction coefficients [-]; d_c: slip over which friction falls [L].
-    """
-
-    mu_s: float
-    mu_k: float
-    d_c: float
-
-    number = 5
-    name = 'slip_weakening'
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class SlipWeakeningHealing(Law):
-    """mu falls with slip, linearly, from mu_s to mu_k, and recovers with time, at rest from the moment slip ends.
-
-    mu_s, mu_k: friction coefficients [-]; d_c: slip over which friction falls [L]; xi: rate of the recovery [1/T].
-    """
-
-    mu_s: float
-    mu_k: float
-    d_c: float
-    xi: float
-
-    number = 6
-    name = 'slip_weakening_healing'
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class FlashHeating(Law):
-    """Rate-and-state friction, slip law, that weakens strongly beyond a slip rate.
-
-    a, b, d_c, v0, f0, theta_0: as of RateAndState, b > 0; f_w: friction coefficient far above v_w, up to f0 [-]; v_w: slip
-    rate beyond which friction weakens [L/T]; n: how sharply, 1 to 1000.
-    """
-
-    a: float
-    b: float
-    d_c: float
-    v0: float
-    f0: float
-    f_w: float
-    v_w: float
-    n: float = 8.0
-    theta_0: float | None = None
-
-    number = 7
-    name = 'flash_heating'
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class LinkerDieterich(Law):
-    """Rate-and-state friction whose state depends on the contact pressure.
-
-    a, b, d_c, v0, f0, evolution, theta_0: as of RateAndState, b > 0; alpha: effect of the pressure on the state [-].
-    """
-
-    a: float
-    b: float
-    d_c: float
-    v0: float
-    f0: float
-    alpha: float
-    evolution: str = 'ageing'
-    theta_0: float | None = None
-
-    number = 8
-    name = 'linker_dieterich'
+if TYPE_CHECKING:
+    def __getattr__(name: str) -> Any:
+        """The classes of the laws, which only a running program knows."""

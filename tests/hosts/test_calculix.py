@@ -91,7 +91,11 @@ class CalculiX(unittest.TestCase):
         own = [float(word) for line in lines[1:] for word in line.split(',') if word.strip()]
         self.assertEqual(own, LAYER + friction_point.LAWS['subloading'])
 
-    def compare_block(self, name, friction):
+    def test_cohesion_and_damper_follow_their_closed_form(self):
+        name = friction_point.WITH_OPTIONS
+        self.compare_block(name, friction_point.LAWS[name], friction_point.CoulombPoint)
+
+    def compare_block(self, name, friction, new_point=friction_point.FrictionPoint):
         tables = run_deck('block_on_block', self.folder, friction)
         thickness = LAYER[0]
         pressure = 10 / 3   # 1 mm^2 pressed by 0.004 mm through springs of 1000 and twice 10000 N/mm
@@ -103,7 +107,7 @@ class CalculiX(unittest.TestCase):
             dt, time = tables[at][1] - time, tables[at][1]
             force = [0.0, 0.0, 0.0]
             for stress, strain, state in zip(stresses, strains, states):
-                point, old = points.setdefault(int(stress[1]), (friction_point.FrictionPoint(friction), [0.0] * 3))
+                point, old = points.setdefault(int(stress[1]), (new_point(friction), [0.0] * 3))
                 gap = [thickness * strain[4], 2 * thickness * strain[6], 2 * thickness * strain[7]]
                 traction = point.update([new - before for new, before in zip(gap, old)], dt)
                 points[int(stress[1])] = (point, gap)
@@ -130,7 +134,7 @@ class CalculiX(unittest.TestCase):
 
     def test_many_elements_follow_friction_update_under_every_law(self):
         """10 x 10 elements between two elastic blocks, pressed unevenly, sheared, reversed."""
-        for name in ('subloading', 'rate-and-state'):
+        for name in ('subloading', 'rate_and_state'):
             with self.subTest(law=name):
                 friction = friction_point.LAWS[name]
                 deck = layer_deck.deck(10, LAYER, material(friction), layer_deck.PRESSED + layer_deck.SHEARED)

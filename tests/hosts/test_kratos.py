@@ -35,20 +35,20 @@ def programme():
 
 @unittest.skipUnless(HAVE_KRATOS, 'Kratos is not installed: ./dev hosts installs it')
 class Blocks(unittest.TestCase):
-    def run_blocks(self, dimension, name, friction):
+    def run_blocks(self, dimension, name, friction, point=friction_point.FrictionPoint):
         import two_blocks
         blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], dimension, friction, dt=DT)
         normal = dimension - 1
-        points = [friction_point.FrictionPoint(friction) for _ in blocks.layers[1]]
+        points = [point(friction) for _ in blocks.layers[1]]
         old = [[0.0] * dimension for _ in points]
         area = 1.0 / len(points)
         worst, worst_state, most, sticking, slipping = 0.0, 0.0, 0, 0, 0
         for x, y, n in programme():
             most = max(most, blocks.step((x, n) if dimension == 2 else (x, y, n)))
             expected = [0.0] * dimension
-            for k, (point, gap) in enumerate(zip(points, blocks.gaps())):
+            for k, (each, gap) in enumerate(zip(points, blocks.gaps())):
                 du = [b - a for a, b in zip(old[k], gap)]
-                traction = point.update([du[normal], *du[:normal]], DT)
+                traction = each.update([du[normal], *du[:normal]], DT)
                 for i, value in enumerate([*traction[1:], traction[0]]):
                     expected[i] += area * value
                 old[k] = gap
@@ -57,7 +57,7 @@ class Blocks(unittest.TestCase):
             for found, wanted in zip(blocks.force(), expected):
                 worst = max(worst, abs(found - wanted) / abs(1e3 * PRESSED))
             for place, found in enumerate(blocks.state()):
-                wanted = sum(point.statev[place] for point in points) / len(points)
+                wanted = sum(each.statev[place] for each in points) / len(points)
                 scale = abs(PRESSED) if place in (1, 2, 3) else 1.0
                 worst_state = max(worst_state, abs(found - wanted) / scale)
         print(f'\n  {dimension}D, {name}: {len(programme())} steps, worst difference {worst:.1e} of the pressing force, '
@@ -80,9 +80,14 @@ class Blocks(unittest.TestCase):
             with self.subTest(law=name):
                 self.run_blocks(3, name, friction)
 
+    def test_cohesion_and_damper_follow_their_closed_form(self):
+        name = friction_point.WITH_OPTIONS
+        for dimension in (2, 3):
+            self.run_blocks(dimension, name, friction_point.LAWS[name], friction_point.CoulombPoint)
+
     def test_a_hundred_interface_elements_pressed_unevenly(self):
         import two_blocks
-        for name in ('subloading', 'rate-and-state'):
+        for name in ('subloading', 'rate_and_state'):
             with self.subTest(law=name):
                 friction, n = friction_point.LAWS[name], 100
                 blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_KRATOS'], 2, friction, dt=DT, n=n, uneven=0.5)

@@ -14,20 +14,13 @@ import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / 'examples/ogs')]
+sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[1] / 'examples/ogs')]
+
+import law_examples  # noqa: E402
 
 HAVE_OGS = all(importlib.util.find_spec(name) for name in ('ogs', 'numpy'))
-# constants of friction_update, in the order of the behaviour's properties after the law's number
-LAWS = {
-    'Subloading': (1, [1000, 800, 0.45, 0.25, 8, 0.2, 60]),
-    'Coulomb': (2, [1000, 800, 0.4]),
-    'StaticKinetic': (3, [1000, 800, 0.45, 0.25, 1]),
-    'RateAndState': (4, [1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4]),
-    'SlipWeakening': (5, [1000, 800, 0.45, 0.25, 1e-2]),
-    'SlipWeakeningHealing': (6, [1000, 800, 0.42, 0.36, 3e-2, 1]),
-    'LinkerDieterich': (8, [1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.1]),
-    'FlashHeating': (7, [1000, 800, 0.01, 0.015, 1e-2, 1e-2, 0.4, 0.38, 0.5]),
-}
+LAWS = {law.camel: law.props() for law in law_examples.laws().values()}
+OPTIONS = ('Subloading', 'Coulomb')   # run with cohesion and damper, too
 
 
 class Points:
@@ -85,16 +78,16 @@ class Blocks(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def run_blocks(self, law, dimension, n):
+    def run_blocks(self, law, dimension, n, ending='', props=None):
         import two_blocks
-        number, constants = LAWS[law]
-        names = self.properties_of(law)
-        blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_MGIS'], f'StickSlip{law}Layer', dict(zip(names, constants)), n,
+        props = props or LAWS[law]
+        name = f'StickSlip{law}Layer{ending}'
+        blocks = two_blocks.TwoBlocks(os.environ['STICKSLIP_MGIS'], name, dict(zip(self.properties_of(name), props[1:])), n,
                                       dimension)
         iterations = blocks.run(self.folder)
         self.assertEqual(len(iterations), two_blocks.STEPS + 1)   # the first, at time 0, solves nothing
         elements = len(blocks.columns())
-        points = Points(elements * 2**dimension, dimension, [number, *constants])
+        points = Points(elements * 2**dimension, dimension, props)
         share = 20.0 ** (dimension - 1) / points.n
         worst = largest = 0.0
         counts = {1: 0, 2: 0, 3: 0}
@@ -108,7 +101,7 @@ class Blocks(unittest.TestCase):
             for status in counts:
                 counts[status] += int((points.statev[0] == status).sum())
         share = {status: count / points.n / two_blocks.STEPS for status, count in counts.items()}
-        print(f'\n  OpenGeoSys {dimension}D, {law}: {elements} elements in the layer, worst difference {worst / largest:.1e} of '
+        print(f'\n  OpenGeoSys {dimension}D, {name}: {elements} elements in the layer, worst difference {worst / largest:.1e} of '
               f'{largest:.0f} N, Newton iterations at most {max(iterations)}, mean {sum(iterations) / two_blocks.STEPS:.2f}; '
               f'stick {share[1]:.0%}, slip {share[2]:.0%}, open {share[3]:.0%}')
         self.assertLess(worst / largest, 1e-7)
@@ -116,9 +109,9 @@ class Blocks(unittest.TestCase):
         self.assertGreater(share[2], 0.3)
         self.assertGreater(share[3], 0.04)
 
-    def properties_of(self, law):
+    def properties_of(self, name):
         import mfront_loader
-        behaviour = mfront_loader.Behaviour(os.environ['STICKSLIP_MGIS'], f'StickSlip{law}Layer', 'PlaneStrain')
+        behaviour = mfront_loader.Behaviour(os.environ['STICKSLIP_MGIS'], name, 'PlaneStrain')
         return behaviour.properties[2:]
 
     def test_two_dimensions_under_every_law(self):
@@ -130,6 +123,13 @@ class Blocks(unittest.TestCase):
         for law in LAWS:
             with self.subTest(law=law):
                 self.run_blocks(law, 3, 10 if law == 'Subloading' else 2)
+
+    def test_cohesion_and_damper_reach_the_host(self):
+        for law in OPTIONS:
+            props = law_examples.laws()[law.lower()].props('cohesion', 'eta_t')
+            for dimension, n in ((2, 10), (3, 2)):
+                with self.subTest(law=law, dimension=dimension):
+                    self.run_blocks(law, dimension, n, 'WithOptions', props)
 
 
 if __name__ == '__main__':

@@ -1,5 +1,9 @@
 """stickslip.update and stickslip.laws, from the installed package."""
 import dataclasses
+import math
+import pathlib
+import pydoc
+import sys
 import threading
 import unittest
 
@@ -7,19 +11,21 @@ import numpy as np
 
 import stickslip
 
-LAWS = {
-    'subloading': stickslip.laws.Subloading(alpha_n=1000, alpha_t=800, mu_s=0.45, mu_k=0.25, kappa=8, xi=0.2, m=60),
-    'coulomb': stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3),
-    'static_kinetic': stickslip.laws.StaticKinetic(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=2),
-    'rate_and_state': stickslip.laws.RateAndState(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6),
-    'slip_weakening': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01),
-    'slip_weakening_healing': stickslip.laws.SlipWeakeningHealing(alpha_n=1000, alpha_t=800, mu_s=0.4, mu_k=0.3, d_c=0.01,
-                                                                  xi=2),
-    'flash_heating': stickslip.laws.FlashHeating(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6,
-                                                 f_w=0.2, v_w=0.01),
-    'linker_dieterich': stickslip.laws.LinkerDieterich(alpha_n=1000, alpha_t=800, a=0.01, b=0.015, d_c=0.01, v0=1e-3, f0=0.6,
-                                                       alpha=0.2),
-}
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+import law_examples  # noqa: E402
+
+CONSTANTS = law_examples.constants_by_law()
+
+
+def example(name):
+    """A law with the constants that have no default."""
+    made = stickslip.laws.classes[name]
+    needed = {field.name for field in dataclasses.fields(made) if field.init and field.default is dataclasses.MISSING}
+    return made(**{key: value for key, value in {**CONSTANTS['every'], **CONSTANTS[name]}.items() if key in needed})
+
+
+LAWS = {name: example(name) for name in stickslip.laws.classes}
 
 
 def motions(n, ndir, seed=1):
@@ -35,8 +41,8 @@ class Update(unittest.TestCase):
         np.testing.assert_allclose(result.tangent, [[1000, 0], [0, 800]], rtol=1e-14)
         self.assertEqual(result.status, 0)
         result = stickslip.update([0, 0.1], 0.1, LAWS['coulomb'], result.state)
-        np.testing.assert_allclose(result.traction, [-10, 3], rtol=1e-14)      # slides: mu p
-        np.testing.assert_allclose(result.tangent, [[1000, 0], [-300, 0]], rtol=1e-14, atol=1e-9)
+        np.testing.assert_allclose(result.traction, [-10, 4], rtol=1e-14)      # slides: mu p
+        np.testing.assert_allclose(result.tangent, [[1000, 0], [-400, 0]], rtol=1e-14, atol=1e-9)
 
     def test_every_layout_gives_the_same(self):
         for name, law in LAWS.items():
@@ -137,10 +143,8 @@ class AtPoints(unittest.TestCase):
     def laws_of(self, n):
         """Every law, with constants that vary; of some also what their own defaults follow from."""
         draw = np.random.default_rng(5)
-        vary = {'subloading': {'mu_s': (0.4, 0.6), 'kappa': (1, 9)}, 'coulomb': {'mu': (0.1, 0.6)}, 'static_kinetic': {'d_c': (1, 4)},
-                'rate_and_state': {'d_c': (0.01, 0.1), 'a': (0.01, 0.02)}, 'slip_weakening': {'mu_s': (0.4, 0.6)}}
-        return [(law, {key: draw.uniform(*limits, n) for key, limits in {'alpha_t': (500, 900), **vary.get(name, {})}.items()})
-                for name, law in LAWS.items()]
+        return [(law, {field.name: getattr(law, field.name) * draw.uniform(0.98, 1.02, n) for field in dataclasses.fields(law)
+                       if field.init and field.default is dataclasses.MISSING}) for law in LAWS.values()]
 
     def test_each_point_is_as_if_it_were_alone(self):
         n = 150
@@ -247,17 +251,60 @@ class Rates(unittest.TestCase):
 
 
 class Laws(unittest.TestCase):
-    def test_every_law_and_constant_of_the_library_has_its_name_here(self):
-        for name, law in LAWS.items():
-            constants = stickslip._library.constants_of(law.number)
-            self.assertEqual({constant.name for constant in constants},
-                             {field.name for field in dataclasses.fields(law) if field.init}, name)
-        self.assertEqual(sorted(law.number for law in LAWS.values()),
-                         list(range(1, 1 + stickslip._library.library.friction_law_count())))
+    def test_every_law_of_the_library_has_a_class_that_tells_its_constants(self):
+        self.assertEqual([law.number for law in LAWS.values()], list(range(1, 1 + stickslip._library.law_count())))
+        for name, made in stickslip.laws.classes.items():
+            self.assertEqual(made.__name__.lower(), name.replace('_', ''))
+            self.assertIs(getattr(stickslip.laws, made.__name__), made)
+            self.assertIn(made.__name__, stickslip.laws.__all__)
+            constants = stickslip._library.constants_of(made.number)
+            self.assertEqual([constant.name for constant in constants],
+                             [field.name for field in dataclasses.fields(made) if field.init], name)
+            described = pydoc.plain(pydoc.render_doc(made))
+            for constant in constants:
+                self.assertIn(f'{constant.name}: {constant.meaning}', described)
 
     def test_defaults_are_the_library_s(self):
         self.assertEqual(LAWS['subloading'].props[8], 0.45)      # mu_0 = mu_s
-        self.assertEqual(LAWS['rate_and_state'].props[9], 10)    # theta_0 = d_c/v0
+        self.assertEqual(LAWS['rate_and_state'].props[9], 1)     # theta_0 = d_c/v0
+        law = LAWS['subloading']
+        self.assertEqual((law.mu_0, law.scheme, law.tau_max, law.mu_ratio, law.direction), (None, 'backward_euler', 0, 1, 'associated'))
+        self.assertEqual(stickslip.laws.FlashHeating(**{**CONSTANTS['every'], **CONSTANTS['flash_heating'], 'direction': 1}).n, 6)
+        self.assertEqual(LAWS['flash_heating'].n, 8)
+
+    def slid(self, law, rate, slip, steps, state):
+        """After sliding at a rate, on a contact that is next to rigid."""
+        for _ in range(steps):
+            result = stickslip.update([0.0, slip / steps], slip / steps / rate, law, state)
+            state = result.state
+        return state
+
+    def test_slip_weakening_that_heals_recovers_at_rest(self):
+        law = dataclasses.replace(LAWS['slip_weakening_healing'], alpha_t=1e9)
+        state = stickslip.update([-0.01, 0.0], 0.1, law).state
+        state = self.slid(law, 1.0, 0.015, 50, state)
+        weak = state[4]
+        self.assertLess(weak, law.mu_s - 0.4 * (law.mu_s - law.mu_k))
+        state = stickslip.update([0.0, 0.0], 0.7, law, state).state
+        self.assertAlmostEqual(state[4], law.mu_s - (law.mu_s - weak) * math.exp(-0.7 * law.xi), delta=1e-12)
+
+    def test_flash_heating_weakens_in_fast_sliding(self):
+        law = dataclasses.replace(LAWS['flash_heating'], alpha_t=1e9, f_w=0.1)
+        start = stickslip.update([-0.01, 0.0], 0.1, law).state
+        for rate in (1e-3, 0.5, 20.0):
+            low = law.a * math.asinh(rate / (2 * law.v0) * math.exp((law.f0 - law.b * math.log(rate / law.v0)) / law.a))
+            steady = law.f_w + (low - law.f_w) / (1 + (rate / law.v_w)**law.n)**(1 / law.n)
+            self.assertAlmostEqual(self.slid(law, rate, 40 * law.d_c, 400, start)[4], steady, delta=2e-6)
+
+    def test_linker_dieterich_s_friction_falls_as_the_pressure_rises(self):
+        law = dataclasses.replace(LAWS['linker_dieterich'], alpha_t=1e13)
+        state = stickslip.update([-0.01, 0.0], 0.1, law).state
+        state = self.slid(law, law.v0, 30 * law.d_c, 300, state)
+        self.assertAlmostEqual(state[4], law.f0, delta=1e-8)
+        step = 1e-6 * law.d_c
+        stepped = stickslip.update([-0.005, step], step / law.v0, law, state).state
+        self.assertAlmostEqual(stepped[4], law.f0 - law.alpha * math.log(1.5), delta=1e-6)
+        self.assertAlmostEqual(self.slid(law, law.v0, 30 * law.d_c, 300, stepped)[4], law.f0, delta=1e-8)
 
     def test_bad_constants_are_refused_in_the_library_s_words(self):
         make = stickslip.laws.Subloading
