@@ -94,14 +94,14 @@ contains
         if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
         if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
         critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(prop_alpha_t)))
-        if (run%damping >= least * critical) return
+        if (run%damping + run%area * law%damping >= least * critical) return
         text = 'friction drops at once when slip begins, and the contact spring (alpha_t) rings &
             &undamped: periods and stress drops depend on it. Take rho_infinity = 0 in &time'
         if (run%chain%n_blocks == 1) then
-            text = trim(text) // ', a damping, or contact = ''rigid'' in &friction with adaptive &
-                &steps'
+            text = trim(text) // ', a damping, eta_t, or contact = ''rigid'' in &friction with &
+                &adaptive steps'
         else
-            text = trim(text) // ' or a damping'
+            text = trim(text) // ', a damping or eta_t'
         end if
         warnings = [warnings, run_warning('undamped_contact', text)]
     end subroutine look_at_contact

@@ -46,6 +46,7 @@ contains
         if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
             'normal_mass', 'is for one block')
         call read_contact(file, run)
+        call check_damper(file, run)
         call derive_slip_rate(file, run)
         call read_events(file, run)
         call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
@@ -319,12 +320,32 @@ contains
             default=min(run%dt_max, max(run%dt_min, 1.0e-6_dp * run%t_end)))
         if (run%dt_min > run%dt_max) call file%reject(group, 'dt_min', 'must not exceed dt_max')
         law = friction_facts(run%props)
-        if (law%damping > 0.0_dp) call file%reject('friction', 'eta_t', &
-            'needs fixed steps (&time dt)')
         run%order = max(1, law%order)
         run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
             file%given(group, 'rho_infinity'), run%across%free()])
     end subroutine read_adaptive
+
+    !> A damper beside the contact spring, with adaptive steps.
+    subroutine check_damper(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+        character(len=*), parameter :: group = 'friction', key = 'eta_t'
+        type(facts) :: law
+
+        if (.not. allocated(run%props) .or. .not. run%adaptive) return
+        law = friction_facts(run%props)
+        if (.not. law%damping > 0.0_dp) return
+        if (run%newmark .or. run%chain%n_blocks > 1) then
+            call file%reject(group, key, 'needs fixed steps (&time dt) of a chain, of a block ' &
+                // 'that moves across the interface, and with beta, gamma or rho_infinity')
+        else if (law%damping <= law%rate_weakening * run%drive%largest_normal()) then
+            call file%reject(group, key, 'must exceed d_c (mu_s - mu_k) normal_traction with ' &
+                // 'adaptive steps (&time rtol), or the contact sticks and slips without end')
+        else if (.not. (run%mass > 0.0_dp .or. run%damping > 0.0_dp .or. law%traits%stiff)) then
+            call file%reject(group, key, 'needs a mass or a damping of the slider with adaptive ' &
+                // 'steps (&time rtol)')
+        end if
+    end subroutine check_damper
 
     !> The spring of the contact, which continuous time can do without.
     subroutine read_contact(file, run)
@@ -344,6 +365,8 @@ contains
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')
         law = friction_facts(run%props)
+        if (law%damping > 0.0_dp) call file%reject(group, key, &
+            'has no spring for a damper (eta_t) to stand beside')
         if (law%traits%onset == onset_gradual .and. law%cohesion > 0.0_dp) call file%reject(group, &
             key, 'has no cohesion where the slip rate tells the traction')
     end subroutine read_contact

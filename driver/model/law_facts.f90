@@ -7,7 +7,8 @@ module law_facts
     implicit none
     private
 
-    public :: cohesion, cohesion_of_each, has_r, internal_variable, typical_strength, virgin_mu
+    public :: cohesion, cohesion_of_each, contact_damping, has_r, internal_variable, &
+        typical_strength, virgin_mu
 
 contains
 
@@ -42,6 +43,16 @@ contains
         law = friction_facts(props)
         strength = law%typical_coefficient * pressure + law%cohesion
     end function typical_strength
+
+    !> Of the damper beside the tangential contact spring.
+    pure function contact_damping(props) result(damping)
+        real(dp), intent(in) :: props(:)   !! constants of the friction routine
+        real(dp) :: damping                !! 0: there is none [F T/L^3]
+        type(facts) :: law
+
+        law = friction_facts(props)
+        damping = law%damping
+    end function contact_damping
 
     !> Traction that the contact carries without pressure.
     pure function cohesion(props) result(traction)

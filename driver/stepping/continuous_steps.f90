@@ -12,7 +12,7 @@ module continuous_steps
         friction_update, law_state, load_rates, onset_drops, onset_gradual, onset_yields, &
         prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
         statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
-    use law_facts, only : cohesion, typical_strength
+    use law_facts, only : cohesion, contact_damping, typical_strength
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
@@ -88,6 +88,7 @@ contains
             eq%damping = run%damping
             eq%area = run%area
             eq%alpha = run%props(prop_alpha_t)
+            eq%damper = contact_damping(run%props)
             eq%rigid = run%rigid_contact
             eq%drive = run%drive
             eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
@@ -114,8 +115,8 @@ contains
             if (eq%surface%traits%stiff) self%natural = self%natural * stiff_sizes
             self%weights = 1.0_dp / (self%rtol * self%natural)
             call synchronise(self, start)
-            eq%phase = phase_stick
-            if (eq%surface%traits%onset == onset_gradual) eq%phase = phase_slide
+            eq%phase = merge(phase_slide, phase_stick, eq%surface%traits%onset == onset_gradual &
+                .or. eq%damper > 0.0_dp)
             if (start%normal <= min(0.0_dp, self%open_below)) eq%phase = phase_open
             eq%sense = eq%sense_of(self%y(elastic))
             if (eq%rigid) call take_off_spring(self, start)
@@ -208,6 +209,7 @@ contains
         select case (self%equations%surface%traits%memory)
         case (1)
             self%y(memory) = state%statev(1, statev_mu)
+            if (self%equations%damper > 0.0_dp) self%y(ratio) = state%statev(1, statev_r)
         case (2)
             self%y(memory) = state%statev(1, statev_r)
             if (self%equations%surface%traits%logarithmic) self%y(memory) = log(self%y(memory))
@@ -320,8 +322,10 @@ contains
             if (pressure > open_level(self) .and. eq%phase /= phase_open) then
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
                 call press(self, state%normal, pressure)
+                if (eq%follows_share()) call slide_on(self, state%normal)
                 call apply_normal_traction(self%system, pressure, state, taken)
                 self%known = .false.
+                if (eq%damper > 0.0_dp) return
                 if (eq%rigid) then
                     if (eq%phase == phase_capped) eq%phase = phase_slide
                     call hold_velocity(self, pressure)
@@ -341,7 +345,8 @@ contains
             else if (pressure > open_level(self) .eqv. eq%phase == phase_open) then
                 eq%phase = phase_open
                 if (pressure > open_level(self)) eq%phase = merge(phase_slide, phase_stick, &
-                    eq%surface%traits%onset == onset_gradual)
+                    eq%surface%traits%onset == onset_gradual .or. eq%damper > 0.0_dp)
+                self%y(ratio) = 0.0_dp
                 self%y(elastic) = 0.0_dp
                 if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) self%y(extension) = 0.0_dp
                 call hold_velocity(self, pressure)
@@ -349,6 +354,18 @@ contains
             end if
         end associate
     end subroutine take_pressure
+
+    !> A subloading surface beside a damper keeps its R when the pressure jumps, unless it sticks.
+    pure subroutine slide_on(self, pressure)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: pressure   !! before the jump, or now [F/L^2]
+        type(law_state) :: state
+
+        state = self%equations%law_state_of(self%y, pressure)
+        self%y(ratio) = state%r
+        self%equations%phase = phase_slide
+        self%known = .false.
+    end subroutine slide_on
 
     !> What the law remembers may depend on the pressure.
     subroutine press(self, before, after)
@@ -411,7 +428,7 @@ contains
                 if (.not. self%known .and. .not. failed) self%known = .true.
                 if (eq%phase == phase_open) return
                 g = eq%switch_values(t, self%y, self%first)
-                if (eq%phase == phase_stick) then
+                if (eq%phase == phase_stick .and. .not. eq%damper > 0.0_dp) then
                     call eq%inputs(t, v_drive, pressure, pressure_rate)
                     if (g(1) < -round_off * eq%strength(self%y, pressure)) return
                     slides = would_slide(self, pressure, pressure_rate)
@@ -647,6 +664,14 @@ contains
         self%known = .false.
         associate (eq => self%equations)
             call eq%inputs(t, v_drive, pressure, pressure_rate)
+            if (eq%damper > 0.0_dp) then
+                if (eq%phase == phase_slide) then
+                    eq%phase = phase_stick
+                else
+                    call slide_on(self, pressure)
+                end if
+                return
+            end if
             strength = min(eq%strength(self%y, pressure), eq%surface%tau_max)
             if (which == 3) then
                 self%y(memory) = eq%surface%traits%kink

@@ -15,7 +15,8 @@ module slider_rates
     integer, parameter, public :: velocity = 2     !! of the block; not without mass [L/T]
     integer, parameter, public :: elastic = 3      !! elastic displacement of the contact [L]
     integer, parameter, public :: memory = 4       !! of the law: mu, D, or ln(theta)
-    integer, parameter, public :: ratio = 5        !! R while a shear cap holds the traction [-]
+    integer, parameter, public :: ratio = 5        !! R while a shear cap holds the traction, or
+                                                   !! beside a damper [-]
     integer, parameter, public :: slip = 6         !! accumulated [L]
     integer, parameter, public :: drive_work = 7   !! [F L]
     integer, parameter, public :: damped = 8       !! energy [F L]
@@ -36,6 +37,8 @@ module slider_rates
         real(dp) :: mass = 0.0_dp, stiffness = 0.0_dp, damping = 0.0_dp   !! as of `slider`
         real(dp) :: area = 0.0_dp
         real(dp) :: alpha = 0.0_dp       !! tangential stiffness of the contact [F/L^3]
+        real(dp) :: damper = 0.0_dp      !! beside that [F T/L^3]; with it, all but a subloading
+                                         !! surface slides, if only at a slip rate of zero
         logical :: rigid = .false.       !! the contact has no spring
         type(programme) :: drive
         integer :: piece = 0             !! of the programme, in which the rates are taken
@@ -46,8 +49,18 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs, &
-            follows_traction, sense_of
+            follows_traction, sense_of, follows_share
     end type slider_equations
+
+    !> Of a contact with a damper: `push - drag v` is its traction at the slip rate v.
+    type :: damper_balance
+        real(dp) :: sense   !! of the slip in x
+        real(dp) :: push    !! >= 0 [F/L^2]
+        real(dp) :: drag    !! >= 0 [F T/L^3]
+    end type damper_balance
+
+    !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
+    real(dp), parameter :: least_ratio = 1.0e-12_dp
 
     !> What a contact does to the block.
     type :: contact_motion
@@ -121,7 +134,9 @@ contains
 
         call inputs(self, t, v_drive, pressure, pressure_rate)
         pull = self%stiffness * y(extension)
-        if (self%rigid .and. self%phase /= phase_open) then
+        if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
+            call damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
+        else if (self%rigid .and. self%phase /= phase_open) then
             if (self%follows_traction()) then
                 call following_contact(self, y, pull, pressure, pressure_rate, contact)
                 failed = .false.
@@ -148,10 +163,11 @@ contains
         dy(elastic) = contact%elastic
         dy(memory) = contact%memory
         dy(ratio) = contact%ratio
+        if (self%follows_share() .and. self%phase == phase_stick) dy(ratio) = 0.0_dp
         dy(slip) = contact%slip
         dy(drive_work) = pull * v_drive
         dy(damped) = self%damping * contact%velocity**2
-        dy(dissipated) = abs(contact%traction) * contact%slip
+        dy(dissipated) = abs(contact%traction) * contact%slip + self%damper * contact%elastic**2
     end subroutine rates
 
     !> A contact on its spring. Without mass and damper, that and the drive spring are one.
@@ -207,6 +223,128 @@ contains
         changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
+
+    !> A contact whose spring has a damper beside it (section 16): the traction follows from the
+    !> slip rate, and that from a balance.
+    pure subroutine damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled), pull, v_drive, pressure, pressure_rate
+        type(contact_motion), intent(out) :: contact
+        logical, intent(out) :: failed
+        type(damper_balance) :: balance
+        type(load_rates) :: load
+        type(law_state) :: state, changes
+        real(dp) :: acceleration, without_slip
+
+        state = law_state_of(self, y, pressure)
+        balance = balance_at(self, y, pull)
+        failed = .false.
+        if (self%follows_share()) then
+            if (self%phase /= phase_stick) contact%slip = (balance%push &
+                - min(self%surface%tau_max, state%r * full_strength(self, y, pressure))) &
+                / balance%drag
+        else
+            call slip_of(self, state, pressure, balance, contact%slip, failed)
+            if (failed) return
+        end if
+        contact%traction = balance%sense * (balance%push - balance%drag * contact%slip)
+        contact%elastic = (contact%traction - self%alpha * y(elastic)) / self%damper
+        contact%velocity = contact%elastic + balance%sense * contact%slip
+        if (self%mass > 0.0_dp) contact%velocity = y(velocity)
+        if (self%surface%traits%memory == 0) return
+        if (self%mass > 0.0_dp) then
+            acceleration = (pull - self%damping * contact%velocity - self%area &
+                * contact%traction) / self%mass
+        else   ! of a block that sticks
+            acceleration = (self%stiffness * (v_drive - contact%velocity) - self%area &
+                * self%alpha * contact%elastic) / (self%damping + self%area * self%damper)
+        end if
+        without_slip = self%alpha * contact%velocity + self%damper * acceleration
+        load = load_rates(abs(contact%traction), balance%sense * without_slip, self%alpha, &
+            pressure, pressure_rate, .false.)
+        if (self%follows_share()) state%r = max(state%r, least_ratio)
+        changes = self%surface%state_rates(state, load, contact%slip)
+        call take_memory(self, changes, state, contact)
+        contact%ratio = 0.0_dp
+        if (contact%slip > 0.0_dp .or. self%phase == phase_stick) contact%ratio = changes%r
+    end subroutine damped_contact
+
+    !> Is it a subloading surface beside a damper? Then R follows the traction while that falls:
+    !> the surface sticks. When it grows, the surface slides.
+    pure function follows_share(self) result(follows)
+        class(slider_equations), intent(in) :: self
+        logical :: follows
+
+        follows = self%damper > 0.0_dp .and. self%surface%traits%memory == 1
+    end function follows_share
+
+    !> What a subloading surface carries when it slides fully [F/L^2].
+    pure function full_strength(self, y, pressure) result(full)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pressure
+        real(dp) :: full
+
+        full = y(memory) * pressure + self%surface%law%cohesion
+    end function full_strength
+
+    !> What pushes the contact, and what a slip rate takes of that. Without mass the slider's damper
+    !> is in it, for the block's velocity goes with the slip rate.
+    pure function balance_at(self, y, pull) result(balance)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pull   !! of the drive spring [F]
+        type(damper_balance) :: balance
+        real(dp) :: push, part
+
+        push = self%alpha * y(elastic) + self%damper * y(velocity)
+        balance%drag = self%damper
+        if (.not. self%mass > 0.0_dp) then
+            part = self%damping / self%damper
+            push = (pull + part * self%alpha * y(elastic)) / (part + self%area)
+            balance%drag = self%damping / (part + self%area)
+        end if
+        balance%sense = self%sense_of(push)
+        balance%push = abs(push)
+    end function balance_at
+
+    !> The least slip rate at which `push - drag v` is what the law, or its cap, resists with.
+    pure subroutine slip_of(self, state, pressure, balance, v, failed)
+        class(slider_equations), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(dp), intent(in) :: pressure
+        type(damper_balance), intent(in) :: balance
+        real(dp), intent(out) :: v        !! [L/T]
+        logical, intent(out) :: failed    !! there is none
+        integer, parameter :: most_iterations = 100
+        real(dp), parameter :: round_off = 4.0_dp * epsilon(1.0_dp)
+        real(dp) :: resistance, by_rate, misfit, capped
+        integer :: i
+
+        failed = .false.
+        v = 0.0_dp
+        call self%surface%resistance_at(state, 0.0_dp, pressure, resistance, by_rate)
+        if (balance%push <= min(resistance, self%surface%tau_max)) return
+        if (balance%push > self%surface%tau_max .and. balance%drag > 0.0_dp) then
+            capped = (balance%push - self%surface%tau_max) / balance%drag
+            call self%surface%resistance_at(state, capped, pressure, resistance, by_rate)
+            v = capped
+            if (resistance >= self%surface%tau_max) return
+            v = 0.0_dp
+        end if
+        if (self%surface%traits%stiff) then
+            v = creep(self%surface, state, balance%push, balance%drag, pressure)
+            return
+        end if
+        do i = 1, most_iterations
+            call self%surface%resistance_at(state, v, pressure, resistance, by_rate)
+            misfit = balance%push - balance%drag * v - resistance
+            failed = .not. balance%drag + by_rate > 0.0_dp
+            if (failed .or. abs(misfit) <= round_off * balance%push) return
+            v = max(0.0_dp, v + misfit / (balance%drag + by_rate))
+        end do
+        failed = .not. abs(misfit) <= 1.0e3_dp * round_off * balance%push
+    end subroutine slip_of
 
     !> Rates of what the law remembers.
     pure subroutine take_memory(self, changes, state, contact)
@@ -275,7 +413,8 @@ contains
             if (.not. self%mass > 0.0_dp) then
                 failed = self%surface%traits%onset /= onset_gradual
                 if (failed) return
-                contact%velocity = creep(self, state, pull, pressure)
+                contact%velocity = self%sense_of(pull) * creep(self%surface, state, &
+                    abs(pull) / self%area, self%damping / self%area, pressure)
                 sense = self%sense_of(contact%velocity)
             end if
             contact%slip = sense * contact%velocity
@@ -331,35 +470,34 @@ contains
             + (other - tau) / little * contact%memory)) / self%alpha
     end subroutine following_contact
 
-    !> The velocity without inertia, `pull = damping v + area traction(v)`, by Newton's method on
-    !> the traction, from where the damper alone would carry the pull: v is convex in the traction.
-    pure function creep(self, state, pull, pressure) result(v)
-        class(slider_equations), intent(in) :: self
+    !> The slip rate of a law without a yield point at which `push = drag v + traction(v)`, by
+    !> Newton's method on the traction, from where the drag alone would carry the push: v is convex
+    !> in the traction.
+    pure function creep(surface, state, push, drag, pressure) result(v)
+        type(sliding_surface), intent(in) :: surface
         type(law_state), intent(in) :: state
-        real(dp), intent(in) :: pull, pressure
-        real(dp) :: v   !! [L/T]
+        real(dp), intent(in) :: push, drag, pressure   !! push >= 0, drag >= 0
+        real(dp) :: v   !! >= 0 [L/T]
         integer, parameter :: most_iterations = 200
         type(load_rates) :: load
         real(dp) :: tau, resistance, by_rate, misfit
         logical :: jumps
         integer :: i
 
-        tau = abs(pull) / self%area
-        if (self%damping > 0.0_dp) then
-            call self%surface%resistance_at(state, abs(pull) / self%damping, pressure, &
-                resistance, by_rate)
+        tau = push
+        if (drag > 0.0_dp) then
+            call surface%resistance_at(state, push / drag, pressure, resistance, by_rate)
             tau = min(tau, resistance)
         end if
         load = load_rates(tau, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
         do i = 1, most_iterations
-            call self%surface%slip_rate(state, load, v, jumps)
-            if (.not. self%damping > 0.0_dp) exit
-            call self%surface%resistance_at(state, v, pressure, resistance, by_rate)
-            misfit = abs(pull) - self%damping * v - self%area * load%traction
-            load%traction = load%traction + misfit / (self%area + self%damping / by_rate)
-            if (abs(misfit) <= 4.0_dp * epsilon(misfit) * abs(pull)) exit
+            call surface%slip_rate(state, load, v, jumps)
+            if (.not. drag > 0.0_dp) exit
+            call surface%resistance_at(state, v, pressure, resistance, by_rate)
+            misfit = push - drag * v - load%traction
+            load%traction = load%traction + misfit / (1.0_dp + drag / by_rate)
+            if (abs(misfit) <= 4.0_dp * epsilon(misfit) * push) exit
         end do
-        v = self%sense_of(pull) * v
     end function creep
 
     !> What the law knows of the contact.
@@ -368,17 +506,25 @@ contains
         real(dp), intent(in) :: y(controlled)
         real(dp), intent(in) :: pressure   !! [F/L^2]
         type(law_state) :: state
-        real(dp) :: full
+        type(damper_balance) :: balance
+        real(dp) :: full, carried
 
         state = law_state(mu=0.0_dp, r=0.0_dp)
         select case (self%surface%traits%memory)
         case (1)
             state%mu = y(memory)
+            full = full_strength(self, y, pressure)
             if (self%phase == phase_capped) then
                 state%r = y(ratio)
-            else
-                full = y(memory) * pressure + self%surface%law%cohesion
-                if (full > 0.0_dp) state%r = min(1.0_dp, self%alpha * abs(y(elastic)) / full)
+            else if (self%damper > 0.0_dp .and. self%phase /= phase_stick) then
+                state%r = min(1.0_dp, max(y(ratio), 0.0_dp))
+            else if (full > 0.0_dp) then
+                carried = self%alpha * abs(y(elastic))
+                if (self%damper > 0.0_dp) then
+                    balance = balance_at(self, y, self%stiffness * y(extension))
+                    carried = balance%push
+                end if
+                state%r = min(1.0_dp, carried / full)
             end if
         case (2)
             state%r = y(memory)
@@ -414,8 +560,14 @@ contains
         tau = 0.0_dp
         if (self%phase == phase_open) return
         tau = self%alpha * y(elastic)
-        if (.not. self%rigid .or. self%follows_traction()) return
+        if (.not. (self%rigid .or. self%damper > 0.0_dp) .or. self%follows_traction()) return
         call inputs(self, t, v_drive, pressure, pressure_rate)
+        if (self%damper > 0.0_dp) then
+            call damped_contact(self, y, self%stiffness * y(extension), v_drive, pressure, &
+                pressure_rate, contact, failed)
+            tau = contact%traction
+            return
+        end if
         call rigid_contact(self, y, self%stiffness * y(extension), pressure, pressure_rate, &
             contact, failed)
         tau = contact%traction
@@ -435,6 +587,10 @@ contains
         logical :: jumps, gradual, capped
 
         g = -1.0_dp
+        if (self%damper > 0.0_dp) then
+            if (self%follows_share() .and. self%phase /= phase_open) g(1) = share_switch(self, t, y)
+            return
+        end if
         gradual = self%surface%traits%onset == onset_gradual
         capped = self%surface%tau_max < huge(own)
         if (self%phase == phase_open .or. gradual .and. .not. capped) return
@@ -476,5 +632,31 @@ contains
             end select
         end associate
     end function switch_values
+
+    !> Positive where a subloading surface beside a damper stops to slide, or starts.
+    pure function share_switch(self, t, y) result(g)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: g
+        real(dp), parameter :: just_below = 1.0_dp - 1.0e-12_dp   !! or round-off would call it back
+        type(contact_motion) :: contact
+        type(damper_balance) :: balance
+        type(law_state) :: state
+        real(dp) :: v_drive, pressure, pressure_rate, pull
+        logical :: failed
+
+        call inputs(self, t, v_drive, pressure, pressure_rate)
+        pull = self%stiffness * y(extension)
+        if (self%phase == phase_stick) then
+            call damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
+            g = contact%ratio
+        else
+            balance = balance_at(self, y, pull)
+            state = law_state_of(self, y, pressure)
+            g = just_below * min(self%surface%tau_max, state%r * full_strength(self, y, &
+                pressure)) - balance%push
+        end if
+    end function share_switch
 
 end module slider_rates
