@@ -16,6 +16,7 @@ import closed_forms  # noqa: E402
 import fault  # noqa: E402
 import flash_heating  # noqa: E402
 import linker_dieterich  # noqa: E402
+import options  # noqa: E402
 import orders  # noqa: E402
 import rate_and_state  # noqa: E402
 import stability  # noqa: E402
@@ -39,6 +40,7 @@ def main():
     rate_and_state.validate(program, report)
     flash_heating.validate(library, program, report)
     linker_dieterich.validate(library, program, report)
+    options.validate(library, program, report)
     stability.validate(program, report)
     orders.validate(program, report)
     fault.validate(program, report)
