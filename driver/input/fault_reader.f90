@@ -9,7 +9,7 @@ module fault_reader
     use archive_file, only : mix
     use csv_table, only : table_reader
     use fault_settings, only : fault_plan
-    use friction_mod, only : friction_facts
+    use friction_mod, only : friction_facts, onset_drops
     use input_kind, only : refuse_other_verb
     use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
@@ -87,8 +87,10 @@ contains
         real(dp), allocatable :: x(:), z(:), props(:)
         real(dp) :: normal
         integer :: faults_before, i, k
+        logical :: drops
 
         call take_profiles(file, group, axes, profiles, read_netcdf)
+        drops = .false.
         faults_before = size(file%faults)
         call add_springs(file, plan)
         call join_nodes(profiles, x, z)
@@ -105,13 +107,16 @@ contains
                     allocate (plan%constants%values(size(props) + 1, size(x), size(z)))
                 end if
                 plan%constants%values(:, i, k) = [props, normal]
+                associate (known => friction_facts(props))
+                    plan%rate_state = known%traits%logarithmic
+                    drops = drops .or. known%traits%onset == onset_drops
+                end associate
             end do
         end do
         plan%constants%x = x
         plan%constants%z = z
-        associate (known => friction_facts(props))
-            plan%rate_state = known%traits%logarithmic
-        end associate
+        if (drops) call file%reject('friction', 'law', 'drops as soon as slip is fast: no length ' &
+            // 'is left over which ruptures break through, and no cells are small enough')
         plan%explicit = plan%rate_state
     end subroutine read_constants
 
@@ -194,6 +199,7 @@ contains
             end if
         else
             call file%require(group, 'initial_file')
+            if (.not. allocated(plan%constants%z)) return   ! the law tells what columns it takes
             if (plan%rate_state) then
                 call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
                     plan%initial, sound, read_netcdf)
@@ -222,7 +228,8 @@ contains
             default='auto')
         if (scheme == 'explicit' .and. .not. plan%explicit .and. allocated(plan%constants%z)) then
             call file%reject('time', 'scheme', &
-                "needs a law that gives the slip rate: law = 'rate_and_state'")
+                "needs a law that gives the slip rate: law = 'rate_and_state', " &
+                // "'flash_heating', 'linker_dieterich'")
         end if
         if (scheme == 'implicit') plan%explicit = .false.
     end subroutine read_times
