@@ -314,6 +314,7 @@ contains
         class(continuous), intent(inout) :: self
         type(slider_state), intent(inout) :: state
         integer, intent(in) :: piece
+        real(dp), parameter :: first_ratio = 1.0e-12_dp   !! R as surfaces meet
         real(dp) :: pressure
         logical :: taken
 
@@ -348,6 +349,14 @@ contains
                     eq%surface%traits%onset == onset_gradual .or. eq%damper > 0.0_dp)
                 self%y(ratio) = 0.0_dp
                 self%y(elastic) = 0.0_dp
+                if (eq%phase == phase_slide .and. eq%surface%traits%memory == 1) then
+                    ! R leaves 0, where the law knows no slip, at once, and so steeply that Rodas4's
+                    ! differences for derivatives tell nothing
+                    self%y(elastic) = eq%sense_of(self%y(velocity)) * first_ratio &
+                        * (self%y(memory) * pressure + eq%surface%law%cohesion) / eq%alpha
+                    self%implicit = .false.
+                    self%stiff = 0
+                end if
                 if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) self%y(extension) = 0.0_dp
                 call hold_velocity(self, pressure)
                 self%known = .false.
