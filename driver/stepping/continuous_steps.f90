@@ -263,7 +263,7 @@ contains
                     cycle
                 end if
                 report%status = friction_no_convergence
-                if (self%jumped) report%status = friction_no_rate
+                if (self%jumped .or. runs_away(self)) report%status = friction_no_rate
                 return
             end if
         end do
@@ -282,6 +282,18 @@ contains
         if (tried%switch > 0) call self%switch(end, tried%switch)
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Does the surface slip far faster than the block moves? Then friction that falls lets the
+    !> contact spring unload by itself, ever faster, without inertia.
+    pure function runs_away(self) result(yes)
+        class(continuous), intent(in) :: self
+        real(dp), parameter :: far = 100.0_dp
+        logical :: yes
+
+        yes = self%known .and. self%system%mass > 0.0_dp .and. .not. self%equations%rigid
+        if (yes) yes = self%first(slip) > far * max(abs(self%y(velocity)), &
+            maxval(abs(self%drive%velocity)))
+    end function runs_away
 
     !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
     !> can tell: friction falls to what balances the drive spring, or changes its side, at once.

@@ -453,6 +453,12 @@ class ContinuousTime(Columns):
         self.assertEqual(result.returncode, 1)
         self.assertIn('steps as short as dt_min = 1.000E-02', result.stderr)
         self.assertNotIn('inertia', result.stderr)
+        # flash heating lets friction fall with slip faster than this contact spring unloads
+        result = self.run_text("&friction law='flash_heating', alpha_n=1, alpha_t=15, a=0.007, b=0.03, d_c=0.03, v0=0.05, f0=0.6, "
+                               'f_w=0.15, v_w=1 /\n&slider mass=0.05, stiffness=2, normal_traction=5, damping=0.1 /\n'
+                               '&drive velocity=2 /\n&time t_end=5, rtol=1e-6 /\n', '--no-plot')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('the contact jumps: friction falls faster than the contact spring unloads', result.stderr)
 
     def test_a_rigid_contact_is_refused_where_it_makes_no_sense(self):
         self.refused(namelist({('friction', 'contact'): "'rigid'", ('time', 'rtol'): '1e-6'}),
