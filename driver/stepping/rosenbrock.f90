@@ -79,9 +79,10 @@ contains
         call differentiate(equations, t, h, y, first, scales(2, :), j, by_time, failed)
         if (failed) return
         do i = 1, controlled
-            growth = max(growth, sum(abs(j(i, :)) * scales(2, :)) / scales(2, i))
+            ! by natural sizes, so that no choice of units has a say in which pivot is taken
+            matrix(i, :) = -j(i, :) * scales(2, :) / scales(2, i)
+            growth = max(growth, sum(abs(matrix(i, :))))
         end do
-        matrix = -j(:controlled, :)
         do i = 1, controlled
             matrix(i, i) = matrix(i, i) + 1.0_dp / (gamma * h)
         end do
@@ -97,8 +98,10 @@ contains
                 if (failed) return
             end if
             k(:, i) = k(:, i) + matmul(k(:, :i - 1), c(i, :i - 1)) / h + (h * d(i)) * by_time
+            k(:controlled, i) = k(:controlled, i) / scales(2, :)
             call dgetrs('N', controlled, 1, matrix, controlled, pivot, k(:, i:i), unknowns, &
                 info)
+            k(:controlled, i) = k(:controlled, i) * scales(2, :)
             ! the others do not act on these
             k(controlled + 1:, i) = gamma * h * (k(controlled + 1:, i) &
                 + matmul(j(controlled + 1:, :), k(:controlled, i)))
