@@ -4,7 +4,7 @@
 !> What every update passes through is in this file, so that a compiler can inline it.
 submodule(friction_mod) friction_advance
     use friction_axes, only : contact_axes, is_unit_vector, turn_axes
-    use friction_contact, only : contact_motion, contact_point, contact_springs, contact_update, &
+    use friction_contact, only : contact_constants, contact_motion, contact_point, contact_update, &
         point_open, point_slip, point_stick, point_virgin, touches
     use friction_continuous, only : contact_rates, point_rates
     use friction_law, only : law
@@ -178,9 +178,9 @@ contains
         if (status < 0) return
         call unpack_state(surface, n, statev, point, status)
         if (status < 0) return
-        call contact_rates(surface, contact_springs(normal=props(prop_alpha_n), &
-            tangential=props(prop_alpha_t), damping=options%damping), options%plane, v, point, &
-            by_time, jumps)
+        call contact_rates(surface, contact_constants(normal=props(prop_alpha_n), &
+            tangential=props(prop_alpha_t), damping=options%damping, plane=options%plane), v, &
+            point, by_time, jumps)
         status = friction_no_rate
         if (jumps) return
         status = friction_ok
@@ -225,15 +225,15 @@ contains
         if (status < 0) return
         if (old%u_n < -motion%blur_start) storage%own%pressure_start = -props(prop_alpha_n) &
             * old%u_n
-        storage%own%pressure_blur = props(prop_alpha_n) * motion%blur
+        if (motion%blur > 0.0_wp) storage%own%pressure_blur = props(prop_alpha_n) * motion%blur
         if (.not. motion%dt > 0.0_wp) then
             status = friction_zero_time_increment
             if (surface%needs_time() .and. sheared(options%cohesion, motion, old)) return
             if (options%damping > 0.0_wp .and. strained(options%cohesion, motion, old)) return
         end if
-        call contact_update(surface, contact_springs(normal=props(prop_alpha_n), &
-            tangential=props(prop_alpha_t), damping=options%damping), options%plane, motion, old, &
-            new, traction, tangent, status)
+        call contact_update(surface, contact_constants(normal=props(prop_alpha_n), &
+            tangential=props(prop_alpha_t), damping=options%damping, plane=options%plane), motion, &
+            old, new, traction, tangent, status)
         if (status < 0) return
         call pack_state(new, statev)
     end subroutine advance
@@ -284,6 +284,12 @@ contains
         statev(statev_slip) = point%slip
         statev(statev_dissipation) = point%dissipation
     end subroutine pack_state
+
+    ! The next three take the cohesion, not the law that it belongs to: with a polymorphic argument
+    ! handed on from one to the other gfortran 12 at -O3, in the single files for Abaqus, where it
+    ! sees all of them at once, leaves out the store of that argument's address (-fipa-modref takes
+    ! it for unread; -fno-ipa-modref mends it), and an increment without time ends with a
+    ! segmentation fault.
 
     !> Does the increment load a closed contact tangentially?
     pure function sheared(cohesion, motion, old)

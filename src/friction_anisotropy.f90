@@ -18,7 +18,7 @@ module friction_anisotropy
     private
 
     public :: associated_spring, associated_way, ellipse_spring, isotropic, orthotropy, &
-        read_orthotropy, slide_associated, sliding_way
+        read_orthotropy, slide_associated, sliding_way, tangential_trial
 
     real(wp), parameter, public :: largest_mu_ratio = 1.0e3_wp   !! of the two coefficients [-]
 
@@ -43,6 +43,16 @@ module friction_anisotropy
     end type orthotropy
 
     type(orthotropy), parameter :: isotropic = orthotropy(squeeze=1.0_wp, associated=.false.)
+
+    !> A closed contact whose slip is prevented.
+    type :: tangential_trial
+        real(wp) :: q(2)           !! elastic tangential displacement [L]
+        real(wp) :: distance       !! its equivalent length [L]
+        real(wp) :: stiffness      !! alpha_t, with a damper beside the spring that of both [F/L^3]
+        real(wp) :: pressure       !! > 0, or with cohesion 0 [F/L^2]
+        real(wp) :: dt             !! increment of time [T]
+        type(law_state) :: start   !! internal variables at the start of sliding
+    end type tangential_trial
 
     !> How the traction of a sliding surface answers a change of the trial displacement q.
     type :: sliding_way
@@ -100,24 +110,18 @@ contains
     end subroutine read_orthotropy
 
     !> Along the normal of the ellipse through the traction at the end.
-    pure subroutine slide_associated(surface, alpha_t, squeeze, q, distance, pressure, dt, start, &
-        slid, way, status)
+    pure subroutine slide_associated(surface, squeeze, trial, slid, way, status)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: alpha_t         !! tangential stiffness [F/L^3]
         real(wp), intent(in) :: squeeze         !! [-]
-        real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
-        real(wp), intent(in) :: distance        !! its equivalent length [L]
-        real(wp), intent(in) :: pressure        !! > 0 [F/L^2]
-        real(wp), intent(in) :: dt              !! increment of time [T]
-        type(law_state), intent(in) :: start    !! at the start of sliding
+        type(tangential_trial), intent(in) :: trial
         type(sliding), intent(out) :: slid
         type(sliding_way), intent(out) :: way
         integer, intent(out) :: status          !! ok, snap back, or no convergence
         type(ellipse_spring) :: spring
         real(wp) :: x
 
-        spring = associated_spring(alpha_t, squeeze, q, distance)
-        call return_along(surface, spring, pressure, dt, start, slid, x, status)
+        spring = associated_spring(trial%stiffness, squeeze, trial%q, trial%distance)
+        call return_along(surface, spring, trial%pressure, trial%dt, trial%start, slid, x, status)
         if (status >= 0) way = associated_way(spring, x, slid%resistance)
     end subroutine slide_associated
 

@@ -1,7 +1,7 @@
 !> One contact point through one increment: normal and tangential springs, open, touchdown, stick
 !> and slip, and the consistent tangent (docs/theory.md, sections 2 to 5).
 module friction_contact
-    use friction_anisotropy, only : orthotropy, slide_associated, sliding_way
+    use friction_anisotropy, only : orthotropy, slide_associated, sliding_way, tangential_trial
     use friction_kinds, only : largest, wp
     use friction_law, only : law, law_state, least_ratio, sliding
     use friction_reloading, only : find_reloading, reloading
@@ -10,7 +10,7 @@ module friction_contact
     implicit none
     private
 
-    public :: contact_motion, contact_point, contact_springs, contact_update, touches
+    public :: contact_constants, contact_motion, contact_point, contact_update, touches
 
     !> A trial sticks if it is above the strength by no more than this share, which is round-off
     !> (docs/theory.md, section 3).
@@ -25,12 +25,13 @@ module friction_contact
     integer, parameter, public :: point_slip = 2     !! closed, has slid in this increment
     integer, parameter, public :: point_open = 3     !! no pressure
 
-    !> Elastic (penalty) stiffness of the contact.
-    type :: contact_springs
-        real(wp) :: normal       !! alpha_n, > 0 [F/L^3]
-        real(wp) :: tangential   !! alpha_t, > 0 [F/L^3]
-        real(wp) :: damping      !! of the damper beside the tangential one, >= 0 [F T/L^3]
-    end type contact_springs
+    !> What a contact is made of beside its friction law.
+    type :: contact_constants
+        real(wp) :: normal        !! penalty stiffness alpha_n, > 0 [F/L^3]
+        real(wp) :: tangential    !! penalty stiffness alpha_t, > 0 [F/L^3]
+        real(wp) :: damping       !! of the damper beside that, >= 0 [F T/L^3]
+        type(orthotropy) :: plane !! how friction depends on the direction
+    end type contact_constants
 
     !> What happens in an increment. A host that controls the pressure itself hands it in.
     type :: contact_motion
@@ -53,15 +54,20 @@ module friction_contact
         real(wp) :: dissipation     !! accumulated dissipated energy per area [F/L]
     end type contact_point
 
+    !> What the contact carries tangentially, and its derivatives.
+    type :: tangential_answer
+        real(wp) :: tau(2)           !! traction [F/L^2]
+        real(wp) :: by_q(2, 2)       !! d(tau)/dq, q being the trial displacement [F/L^3]
+        real(wp) :: by_pressure(2)   !! d(tau)/d(pressure) [-]
+    end type tangential_answer
+
 contains
 
     !> Traction, consistent tangent and new state of a contact point. Only on a status >= 0 do they
     !> mean anything, and only then are traction and tangent written.
-    pure subroutine contact_update(surface, springs, plane, motion, old, new, traction, tangent, &
-        status)
+    pure subroutine contact_update(surface, constants, motion, old, new, traction, tangent, status)
         class(law), intent(in) :: surface
-        type(contact_springs), intent(in) :: springs
-        type(orthotropy), intent(in) :: plane        !! how friction depends on the direction
+        type(contact_constants), intent(in) :: constants
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old       !! state at the start of the increment
         type(contact_point), intent(out) :: new      !! state at its end
@@ -70,78 +76,118 @@ contains
         real(wp), intent(inout) :: tangent(3, 3)   !! d(traction)/d(du); where the pressure is
                                                    !! given, column 1 is d/d(pressure)
         integer, intent(out) :: status   !! ok, snap back, bad increment, or no convergence
-        real(wp) :: pressure, loaded, q(2), tau(2), by_q(2, 2), by_pressure(2), stiffness
-        logical :: closes
+        type(tangential_trial) :: trial
+        type(tangential_answer) :: answer
+        real(wp) :: loaded
+        logical :: closed, simple
+
+        call find_normal(surface, constants, motion, old, new, trial%pressure, closed, status)
+        if (status < 0) return
+        if (.not. closed) then
+            call open_contact(surface, motion%dt, old, new)
+            traction = 0.0_wp
+            tangent = 0.0_wp
+            return
+        end if
+        trial%stiffness = constants%tangential
+        trial%q(1) = old%u_et(1) + motion%du(2)
+        trial%q(2) = old%u_et(2) + motion%du(3)
+        loaded = 1.0_wp
+        simple = .not. (constants%damping > 0.0_wp .or. old%u_n > 0.0_wp)
+        if (.not. simple) call load(surface%cohesion, constants, motion, old, new, loaded, trial)
+        call tangential_update(surface, constants%plane, motion, old, trial, new, answer, status)
+        if (status < 0) return
+        if (.not. motion%pressure_given) answer%by_pressure = -constants%normal &
+            * answer%by_pressure
+        if (.not. simple) then
+            if (constants%damping > 0.0_wp) call strain_damper(constants, motion, loaded, old, &
+                answer%tau, new)
+            if (loaded < 1.0_wp) call touch_down(motion%du, old%u_n, loaded, answer)
+        end if
+        traction(1) = -trial%pressure
+        traction(2) = answer%tau(1)
+        traction(3) = answer%tau(2)
+        tangent(1, 1) = constants%normal
+        if (motion%pressure_given) tangent(1, 1) = -1.0_wp
+        tangent(1, 2) = 0.0_wp
+        tangent(1, 3) = 0.0_wp
+        tangent(2, 1) = answer%by_pressure(1)
+        tangent(3, 1) = answer%by_pressure(2)
+        tangent(2, 2) = answer%by_q(1, 1)
+        tangent(3, 2) = answer%by_q(2, 1)
+        tangent(2, 3) = answer%by_q(1, 2)
+        tangent(3, 3) = answer%by_q(2, 2)
+    end subroutine contact_update
+
+    !> Normal displacement and pressure at the end of the increment, and whether the contact is
+    !> closed then.
+    pure subroutine find_normal(surface, constants, motion, old, new, pressure, closed, status)
+        class(law), intent(in) :: surface
+        type(contact_constants), intent(in) :: constants
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        type(contact_point), intent(inout) :: new   !! out: normal displacement
+        real(wp), intent(out) :: pressure           !! [F/L^2]
+        logical, intent(out) :: closed
+        integer, intent(out) :: status              !! ok or bad increment
 
         new%u_n = old%u_n + motion%du(1)
-        pressure = -springs%normal * new%u_n
+        pressure = -constants%normal * new%u_n
         if (motion%pressure_given) then
             pressure = motion%pressure
-            new%u_n = -pressure / springs%normal
+            new%u_n = -pressure / constants%normal
         end if
         status = friction_bad_increment
         if (max(abs(new%u_n), pressure) > largest) return
         status = friction_ok
-        if (.not. pressure > least) then
-            if (.not. touches(surface%cohesion, motion%blur, new%u_n)) then
-                call open_contact(surface, motion%dt, old, new)
-                traction = 0.0_wp
-                tangent = 0.0_wp
-                return
-            end if
-            pressure = 0.0_wp
-        end if
+        closed = pressure > least
+        if (closed) return
+        closed = touches(surface%cohesion, motion%blur, new%u_n)
+        pressure = 0.0_wp
+    end subroutine find_normal
 
-        ! Only the part of the increment after touchdown loads the contact.
-        closes = old%u_n > 0.0_wp .and. .not. motion%pressure_given
-        if (closes .and. surface%cohesion > 0.0_wp) closes = old%u_n > motion%blur &
-            .and. motion%du(1) < 0.0_wp   ! else it touched from the start
-        loaded = 1.0_wp
-        if (closes) loaded = min(new%u_n, 0.0_wp) / motion%du(1)
-        stiffness = springs%tangential
-        q(1) = old%u_et(1) + loaded * motion%du(2)
-        q(2) = old%u_et(2) + loaded * motion%du(3)
-        if (springs%damping > 0.0_wp) call stiffen(springs, motion, loaded, old, stiffness, q)
-
-        call tangential_update(surface, stiffness, plane, q, pressure, motion, old, new, tau, &
-            by_q, by_pressure, status)
-        if (status < 0) return
-        if (springs%damping > 0.0_wp) call strain_damper(springs, motion, loaded, old, tau, new)
-        if (.not. motion%pressure_given) by_pressure = -springs%normal * by_pressure
-        if (closes) call touch_down(motion%du, old%u_n, loaded, by_q, by_pressure)
-        traction(1) = -pressure
-        traction(2) = tau(1)
-        traction(3) = tau(2)
-        tangent(1, 1) = springs%normal
-        if (motion%pressure_given) tangent(1, 1) = -1.0_wp
-        tangent(1, 2) = 0.0_wp
-        tangent(1, 3) = 0.0_wp
-        tangent(2, 1) = by_pressure(1)
-        tangent(3, 1) = by_pressure(2)
-        tangent(2, 2) = by_q(1, 1)
-        tangent(3, 2) = by_q(2, 1)
-        tangent(2, 3) = by_q(1, 2)
-        tangent(3, 3) = by_q(2, 2)
-    end subroutine contact_update
-
-    !> Spring and damper side by side, by backward Euler, are one spring of a higher stiffness with
-    !> a shorter displacement (docs/theory.md, section 16).
-    pure subroutine stiffen(springs, motion, loaded, old, stiffness, q)
-        type(contact_springs), intent(in) :: springs
+    !> Only the part of an increment after touchdown loads a contact that was open, unless the
+    !> pressure is given: the share of that.
+    pure function share_after_touchdown(cohesion, motion, old, new) result(share)
+        real(wp), intent(in) :: cohesion          !! [F/L^2]
         type(contact_motion), intent(in) :: motion
-        real(wp), intent(in) :: loaded           !! share of the motion that loads the contact [-]
-        type(contact_point), intent(in) :: old
-        real(wp), intent(out) :: stiffness       !! of both [F/L^3]
-        real(wp), intent(out) :: q(2)            !! of which this is the traction without slip [L]
+        type(contact_point), intent(in) :: old    !! with a gap
+        type(contact_point), intent(in) :: new    !! closed
+        real(wp) :: share                         !! 0 to 1 [-]
+        logical :: touched   ! from the start
 
-        stiffness = springs%tangential + damping_per_time(springs%damping, motion%dt)
-        q = (springs%tangential / stiffness) * old%u_et + loaded * motion%du(2:3)
-    end subroutine stiffen
+        share = 1.0_wp
+        if (motion%pressure_given) return
+        touched = .not. (old%u_n > motion%blur .and. motion%du(1) < 0.0_wp)
+        if (cohesion > 0.0_wp .and. touched) return
+        share = min(new%u_n, 0.0_wp) / motion%du(1)
+    end function share_after_touchdown
+
+    !> What loads a contact that was open, or has a damper. Spring and damper side by side, by
+    !> backward Euler, are one spring of a higher stiffness with a shorter displacement
+    !> (docs/theory.md, section 16).
+    pure subroutine load(cohesion, constants, motion, old, new, loaded, trial)
+        real(wp), intent(in) :: cohesion           !! [F/L^2]
+        type(contact_constants), intent(in) :: constants
+        type(contact_motion), intent(in) :: motion
+        type(contact_point), intent(in) :: old
+        type(contact_point), intent(in) :: new     !! closed
+        real(wp), intent(inout) :: loaded   !! in: 1, out: share of the motion that loads it [-]
+        type(tangential_trial), intent(inout) :: trial   !! out: q and its stiffness
+
+        if (old%u_n > 0.0_wp) loaded = share_after_touchdown(cohesion, motion, old, new)
+        trial%q = old%u_et
+        if (constants%damping > 0.0_wp) then
+            trial%stiffness = constants%tangential + damping_per_time(constants%damping, motion%dt)
+            trial%q = (constants%tangential / trial%stiffness) * old%u_et
+        end if
+        trial%q = trial%q + loaded * motion%du(2:3)
+    end subroutine load
 
     !> The elastic displacement at which spring and damper carry the traction, and the energy that
     !> the damper has taken.
-    pure subroutine strain_damper(springs, motion, loaded, old, tau, new)
-        type(contact_springs), intent(in) :: springs
+    pure subroutine strain_damper(constants, motion, loaded, old, tau, new)
+        type(contact_constants), intent(in) :: constants
         type(contact_motion), intent(in) :: motion
         real(wp), intent(in) :: loaded      !! share of the motion that loads the contact [-]
         type(contact_point), intent(in) :: old
@@ -149,8 +195,8 @@ contains
         type(contact_point), intent(inout) :: new
         real(wp) :: viscous, stiffness
 
-        viscous = damping_per_time(springs%damping, motion%dt)
-        stiffness = springs%tangential + viscous
+        viscous = damping_per_time(constants%damping, motion%dt)
+        stiffness = constants%tangential + viscous
         new%u_et = old%u_et + loaded * motion%du(2:3)
         if (new%phase == point_slip) new%u_et = tau / stiffness + (viscous / stiffness) * old%u_et
         new%dissipation = min(new%dissipation + viscous * sum((new%u_et - old%u_et)**2), largest)
@@ -181,17 +227,17 @@ contains
 
     !> Derivatives where the increment closes a gap: its tangential part counts from touchdown on,
     !> and touchdown moves with the normal part.
-    pure subroutine touch_down(du, gap, loaded, by_q, by_du_n)
+    pure subroutine touch_down(du, gap, loaded, answer)
         real(wp), intent(in) :: du(3)              !! increment of displacement [L]
         real(wp), intent(in) :: gap                !! at its start, > 0 [L]
         real(wp), intent(in) :: loaded             !! share after touchdown [-]
-        real(wp), intent(inout) :: by_q(2, 2)      !! in: by the loaded displacement, out: by du
-        real(wp), intent(inout) :: by_du_n(2)      !! by du(1) [F/L^3]
+        type(tangential_answer), intent(inout) :: answer   !! in: by the loaded displacement and
+                                                           !! by du(1), out: by du
         real(wp) :: by_loaded(2)   !! no more than some tractions, which end with the pressure
 
-        by_loaded = by_q(:, 1) * du(2) + by_q(:, 2) * du(3)
-        by_du_n = by_du_n - (gap / du(1)) * (by_loaded / du(1))
-        by_q = loaded * by_q
+        by_loaded = answer%by_q(:, 1) * du(2) + answer%by_q(:, 2) * du(3)
+        answer%by_pressure = answer%by_pressure - (gap / du(1)) * (by_loaded / du(1))
+        answer%by_q = loaded * answer%by_q
     end subroutine touch_down
 
     !> No pressure: nothing is carried, the surfaces forget their elastic displacement and heal.
@@ -211,61 +257,59 @@ contains
 
     !> Stick or slip under pressure: the tangential traction, its derivatives by `q` and by the
     !> pressure.
-    pure subroutine tangential_update(surface, alpha_t, plane, q, pressure, motion, old, new, &
-        tau, by_q, by_pressure, status)
+    pure subroutine tangential_update(surface, plane, motion, old, trial, new, answer, status)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         type(orthotropy), intent(in) :: plane
-        real(wp), intent(inout) :: q(2)       !! trial elastic tangential displacement [L]
-        real(wp), intent(in) :: pressure      !! > 0, or with cohesion 0 [F/L^2]
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old
+        type(tangential_trial), intent(inout) :: trial   !! out: distance and start, too; a q next
+                                                         !! to nothing is none
         type(contact_point), intent(inout) :: new
-        real(wp), intent(out) :: tau(2)             !! tangential traction [F/L^2]
-        real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
-        real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
+        type(tangential_answer), intent(out) :: answer
         integer, intent(out) :: status
         real(wp), parameter :: near_underflow = 2.0_wp**(-450)   !! of a length, in its square [L]
-        type(law_state) :: start
         type(reloading) :: reload
-        real(wp) :: distance, strength, limit, blur
+        real(wp) :: strength, limit, blur, stiffness
 
         status = friction_bad_increment
-        distance = sqrt(q(1)**2 + (plane%squeeze * q(2))**2)
+        stiffness = trial%stiffness
+        trial%dt = motion%dt
+        trial%distance = sqrt(trial%q(1)**2 + (plane%squeeze * trial%q(2))**2)
         blur = max(1.0_wp, plane%squeeze) * motion%blur
-        if (distance <= max(near_underflow, blur)) call measure(q, plane%squeeze, max(least, &
-            motion%blur), distance)
-        if (max(distance, alpha_t * distance) > largest) return
+        if (trial%distance <= max(near_underflow, blur)) call measure(trial%q, plane%squeeze, &
+            max(least, motion%blur), trial%distance)
+        if (max(trial%distance, stiffness * trial%distance) > largest) return
         status = friction_ok
-        call surface%rest(alpha_t * distance, pressure, motion%dt, old%inner, new%inner, strength)
-        start = old%inner
+        call surface%rest(stiffness * trial%distance, trial%pressure, trial%dt, old%inner, &
+            new%inner, strength)
+        trial%start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
             call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
-                [q(1), plane%squeeze * q(2)], strength / alpha_t, max(old%inner%r, least_ratio) &
-                * new%inner%mu / alpha_t, motion%blur_start, reload)
+                [trial%q(1), plane%squeeze * trial%q(2)], strength / stiffness, &
+                max(old%inner%r, least_ratio) * new%inner%mu / stiffness, motion%blur_start, &
+                reload)
             reload%by_q(2) = plane%squeeze * reload%by_q(2)
-            start%r = reload%share * start%r
+            trial%start%r = reload%share * trial%start%r
             strength = max(reload%share, least_ratio / max(old%inner%r, least_ratio)) * strength
         end if
         limit = strength * (1.0_wp + verge)
-        if (blur > 0.0_wp) limit = limit + alpha_t * blur + strength * relative_blur(surface, &
-            motion%blur, new, pressure)
-        if (alpha_t * distance <= limit) then
+        if (blur > 0.0_wp) limit = limit + stiffness * blur + strength * relative_blur(surface, &
+            motion%blur, new, trial%pressure)
+        if (stiffness * trial%distance <= limit) then
             new%phase = point_stick
-            new%u_et(1) = q(1)
-            new%u_et(2) = q(2)
+            new%u_et(1) = trial%q(1)
+            new%u_et(2) = trial%q(2)
             new%slip = old%slip
             new%dissipation = old%dissipation
-            tau(1) = alpha_t * q(1)
-            tau(2) = alpha_t * q(2)
-            by_q(1, 1) = alpha_t
-            by_q(2, 1) = 0.0_wp
-            by_q(1, 2) = 0.0_wp
-            by_q(2, 2) = alpha_t
-            by_pressure = 0.0_wp
+            answer%tau(1) = stiffness * trial%q(1)
+            answer%tau(2) = stiffness * trial%q(2)
+            answer%by_q(1, 1) = stiffness
+            answer%by_q(2, 1) = 0.0_wp
+            answer%by_q(1, 2) = 0.0_wp
+            answer%by_q(2, 2) = stiffness
+            answer%by_pressure = 0.0_wp
         else
-            call slip_update(surface, alpha_t, plane, q, distance, pressure, motion%dt, start, &
-                reload, old, new, tau, by_q, by_pressure, status)
+            call slip_update(surface, plane, trial, reload, old, new, answer, status)
         end if
     end subroutine tangential_update
 
@@ -299,33 +343,23 @@ contains
     end subroutine measure
 
     !> The same where the trial traction is above the strength.
-    pure subroutine slip_update(surface, alpha_t, plane, q, distance, pressure, dt, start, reload, &
-        old, new, tau, by_q, by_pressure, status)
+    pure subroutine slip_update(surface, plane, trial, reload, old, new, answer, status)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: alpha_t       !! tangential stiffness [F/L^3]
         type(orthotropy), intent(in) :: plane
-        real(wp), intent(in) :: q(2)          !! trial elastic tangential displacement [L]
-        real(wp), intent(in) :: distance      !! its equivalent length [L]
-        real(wp), intent(in) :: pressure      !! > 0 [F/L^2]
-        real(wp), intent(in) :: dt            !! increment of time [T]
-        type(law_state), intent(in) :: start  !! internal variables at the start of sliding
+        type(tangential_trial), intent(in) :: trial
         type(reloading), intent(in) :: reload   !! for a law that follows the path
         type(contact_point), intent(in) :: old
         type(contact_point), intent(inout) :: new
-        real(wp), intent(out) :: tau(2)             !! tangential traction [F/L^2]
-        real(wp), intent(out) :: by_q(2, 2)         !! d(tau)/dq [F/L^3]
-        real(wp), intent(out) :: by_pressure(2)     !! d(tau)/d(pressure) [-]
+        type(tangential_answer), intent(out) :: answer
         integer, intent(out) :: status
         type(sliding) :: slid
         type(sliding_way) :: way
-        real(wp) :: mean, share, coupling, by_p, pull(2), start_rate
+        real(wp) :: mean, share, by_p, pull(2), start_rate
 
         if (plane%associated) then
-            call slide_associated(surface, alpha_t, plane%squeeze, q, distance, pressure, dt, &
-                start, slid, way, status)
+            call slide_associated(surface, plane%squeeze, trial, slid, way, status)
         else
-            call slide_radially(surface, alpha_t, plane%squeeze, q, distance, pressure, dt, &
-                start, slid, way, status)
+            call slide_radially(surface, plane%squeeze, trial, slid, way, status)
         end if
         if (status < 0) return
 
@@ -335,62 +369,72 @@ contains
         by_p = slid%d_pressure
         mean = slid%resistance
         if (surface%follows_path) then   ! the traction at the start of sliding counts, too
-            start_rate = old%inner%r * surface%start_rate(pressure, start, slid%state)
+            start_rate = old%inner%r * surface%start_rate(trial%pressure, trial%start, slid%state)
             pull = pull + start_rate * reload%by_q
             by_p = by_p + start_rate * reload%by_pressure
-            mean = 0.5_wp * (mean + alpha_t * reload%share * hypot(old%u_et(1), &
+            mean = 0.5_wp * (mean + trial%stiffness * reload%share * hypot(old%u_et(1), &
                 plane%squeeze * old%u_et(2)))
         end if
-        coupling = alpha_t / max(way%stiffness + slid%d_slip, epsilon(alpha_t) * way%stiffness)
 
-        tau(1) = way%tau(1)
-        tau(2) = way%tau(2)
         new%phase = point_slip
         new%inner%mu = min(slid%state%mu, largest)
         new%inner%r = min(slid%state%r, largest)
-        share = 1.0_wp / alpha_t
-        new%u_et(1) = share * tau(1)
-        new%u_et(2) = share * tau(2)
+        share = 1.0_wp / trial%stiffness
+        new%u_et(1) = share * way%tau(1)
+        new%u_et(2) = share * way%tau(2)
         new%slip = min(old%slip + slid%slip, largest)
         new%dissipation = min(old%dissipation + mean * slid%slip * way%work_ratio, largest)
-        by_pressure(1) = coupling * by_p * way%response(1)
-        by_pressure(2) = coupling * by_p * way%response(2)
-        by_q(1, 1) = coupling * way%response(1) * pull(1) + way%across * way%along(2)**2
-        by_q(2, 1) = coupling * way%response(2) * pull(1) - way%across * way%along(1) * way%along(2)
-        by_q(1, 2) = coupling * way%response(1) * pull(2) - way%across * way%along(1) * way%along(2)
-        by_q(2, 2) = coupling * way%response(2) * pull(2) + way%across * way%along(1)**2
+        answer%tau(1) = way%tau(1)
+        answer%tau(2) = way%tau(2)
+        call find_derivatives(way, trial%stiffness / max(way%stiffness + slid%d_slip, &
+            epsilon(share) * way%stiffness), pull, by_p, answer)
     end subroutine slip_update
+
+    !> Derivatives of the traction of a contact that slides (docs/theory.md, section 4).
+    pure subroutine find_derivatives(way, coupling, pull, by_p, answer)
+        type(sliding_way), intent(in) :: way
+        real(wp), intent(in) :: coupling   !! alpha_t/D [-]
+        real(wp), intent(in) :: pull(2)    !! growth of the resistance with q [F/L^3]
+        real(wp), intent(in) :: by_p       !! and with the pressure [-]
+        type(tangential_answer), intent(inout) :: answer   !! out: all but the traction
+        real(wp) :: response(2)
+
+        response(1) = coupling * way%response(1)
+        response(2) = coupling * way%response(2)
+        answer%by_pressure(1) = response(1) * by_p
+        answer%by_pressure(2) = response(2) * by_p
+        answer%by_q(1, 1) = response(1) * pull(1) + way%across * way%along(2)**2
+        answer%by_q(2, 1) = response(2) * pull(1) - way%across * way%along(1) * way%along(2)
+        answer%by_q(1, 2) = response(1) * pull(2) - way%across * way%along(1) * way%along(2)
+        answer%by_q(2, 2) = response(2) * pull(2) + way%across * way%along(1)**2
+    end subroutine find_derivatives
 
     !> Along the trial traction, as every isotropic surface slides (squeeze = 1), and an orthotropic
     !> one by option. How much of the traction counts depends on the direction alone.
-    pure subroutine slide_radially(surface, alpha_t, squeeze, q, distance, pressure, dt, start, &
-        slid, way, status)
+    pure subroutine slide_radially(surface, squeeze, trial, slid, way, status)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: alpha_t         !! tangential stiffness [F/L^3]
         real(wp), intent(in) :: squeeze         !! [-]
-        real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
-        real(wp), intent(in) :: distance        !! its equivalent length [L]
-        real(wp), intent(in) :: pressure        !! > 0 [F/L^2]
-        real(wp), intent(in) :: dt              !! increment of time [T]
-        type(law_state), intent(in) :: start    !! at the start of sliding
+        type(tangential_trial), intent(in) :: trial
         type(sliding), intent(out) :: slid
         type(sliding_way), intent(out) :: way
         integer, intent(out) :: status          !! ok, snap back, or no convergence
-        real(wp) :: inverse
+        real(wp) :: inverse, q(2)
 
-        inverse = 1.0_wp / distance
-        way%stiffness = alpha_t
+        q(1) = trial%q(1)
+        q(2) = trial%q(2)
+        inverse = 1.0_wp / trial%distance
+        way%stiffness = trial%stiffness
         way%work_ratio = 1.0_wp
         way%cross_stiffness = 0.0_wp
         if (abs(squeeze - 1.0_wp) > 0.0_wp) then
             inverse = 1.0_wp / hypot(q(1), q(2))
-            way%stiffness = alpha_t * distance * inverse
-            way%work_ratio = alpha_t / way%stiffness
+            way%stiffness = trial%stiffness * trial%distance * inverse
+            way%work_ratio = trial%stiffness / way%stiffness
             way%cross_stiffness = (q(1) * inverse) * (q(2) * inverse) * (squeeze**2 - 1.0_wp) &
                 * way%work_ratio
         end if
-        call return_map(surface, alpha_t * distance, way%stiffness, pressure, dt, start, slid, &
-            status)
+        call return_map(surface, trial%stiffness * trial%distance, way%stiffness, trial%pressure, &
+            trial%dt, trial%start, slid, status)
         if (status < 0) return
         way%across = slid%resistance * way%work_ratio * inverse
         way%cross_stiffness = way%cross_stiffness * way%across

@@ -3,7 +3,7 @@
 !> increment of time tends to zero.
 module friction_continuous
     use friction_anisotropy, only : associated_spring, associated_way, orthotropy, sliding_way
-    use friction_contact, only : contact_point, contact_springs
+    use friction_contact, only : contact_constants, contact_point
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, law_traits, load_rates
     use friction_return_map, only : middle, unload_to, unloaded, unloading
@@ -24,10 +24,9 @@ module friction_continuous
 contains
 
     !> What slips and what evolves under a velocity.
-    pure subroutine contact_rates(surface, springs, plane, velocity, point, rates, jumps)
+    pure subroutine contact_rates(surface, constants, velocity, point, rates, jumps)
         class(law), intent(in) :: surface
-        type(contact_springs), intent(in) :: springs
-        type(orthotropy), intent(in) :: plane    !! how friction depends on the direction
+        type(contact_constants), intent(in) :: constants
         real(wp), intent(in) :: velocity(3)      !! relative: normal, tangential 1 and 2 [L/T]
         type(contact_point), intent(in) :: point
         type(point_rates), intent(out) :: rates
@@ -37,7 +36,7 @@ contains
         logical :: closed
 
         v = velocity(2:3)
-        load%pressure = max(0.0_wp, -springs%normal * point%u_n)
+        load%pressure = max(0.0_wp, -constants%normal * point%u_n)
         load%pressure_rate = 0.0_wp
         load%sliding = .false.
         rates%u_n = velocity(1)
@@ -48,25 +47,25 @@ contains
         if (.not. closed) closed = surface%cohesion > 0.0_wp .and. point%u_n <= 0.0_wp &
             .and. .not. velocity(1) > 0.0_wp
         if (closed) then
-            load%pressure_rate = -springs%normal * velocity(1)
-            if (springs%damping > 0.0_wp) then
-                call damped_rates(surface, springs, plane, v, point, load, rates, jumps)
+            load%pressure_rate = -constants%normal * velocity(1)
+            if (constants%damping > 0.0_wp) then
+                call damped_rates(surface, constants, v, point, load, rates, jumps)
                 return
             end if
-            call slip_directions(plane, point%u_et, v, gradient, along)
-            load%traction = springs%tangential * hypot(point%u_et(1), plane%squeeze &
+            call slip_directions(constants%plane, point%u_et, v, gradient, along)
+            load%traction = constants%tangential * hypot(point%u_et(1), constants%plane%squeeze &
                 * point%u_et(2))
-            load%loading = springs%tangential * dot_product(gradient, v)
-            load%stiffness = springs%tangential * dot_product(gradient, along)
+            load%loading = constants%tangential * dot_product(gradient, v)
+            load%stiffness = constants%tangential * dot_product(gradient, along)
             call surface%slip_rate(point%inner, load, rates%slip, jumps)
             rates%u_et = v - rates%slip * along
-            rates%dissipation = max(0.0_wp, springs%tangential * dot_product(point%u_et, along) &
+            rates%dissipation = max(0.0_wp, constants%tangential * dot_product(point%u_et, along) &
                 * rates%slip)
         else
             jumps = .false.
             load%traction = 0.0_wp
             load%loading = 0.0_wp
-            load%stiffness = springs%tangential
+            load%stiffness = constants%tangential
         end if
         rates%inner = surface%state_rates(point%inner, load, rates%slip)
     end subroutine contact_rates
@@ -74,29 +73,29 @@ contains
     !> The same of a closed contact with a damper beside its spring, which tells the traction for
     !> any slip rate: the balance of section 16 in place of the consistency of section 10. The rates
     !> of what follows from the traction are those at a constant slip rate.
-    pure subroutine damped_rates(surface, springs, plane, v, point, load, rates, jumps)
+    pure subroutine damped_rates(surface, constants, v, point, load, rates, jumps)
         class(law), intent(in) :: surface
-        type(contact_springs), intent(in) :: springs
-        type(orthotropy), intent(in) :: plane
+        type(contact_constants), intent(in) :: constants
         real(wp), intent(in) :: v(2)              !! tangential velocity [L/T]
         type(contact_point), intent(in) :: point
         type(load_rates), intent(inout) :: load   !! with the pressure and its rate
         type(point_rates), intent(inout) :: rates
         logical, intent(out) :: jumps
         type(law_traits) :: traits
-        real(wp) :: pull(2), tau(2), gradient(2), along(2)
+        type(sliding_way) :: way
+        real(wp) :: pull(2), gradient(2), along(2)
 
-        pull = springs%tangential * point%u_et + springs%damping * v
-        call balance_damper(surface, springs%damping, plane, pull, load%pressure, point%inner, &
-            tau, along, rates%slip, jumps)
+        pull = constants%tangential * point%u_et + constants%damping * v
+        call balance_damper(surface, constants, pull, load%pressure, point%inner, way, &
+            rates%slip, jumps)
         if (jumps) return
-        rates%u_et = v - rates%slip * along
-        rates%dissipation = dot_product(tau, along) * rates%slip + springs%damping &
+        rates%u_et = v - rates%slip * way%along
+        rates%dissipation = dot_product(way%tau, way%along) * rates%slip + constants%damping &
             * dot_product(rates%u_et, rates%u_et)
-        call slip_directions(plane, tau, v, gradient, along)
-        load%traction = hypot(tau(1), plane%squeeze * tau(2))
-        load%loading = springs%tangential * dot_product(gradient, v)
-        load%stiffness = springs%tangential * dot_product(gradient, along)
+        call slip_directions(constants%plane, way%tau, v, gradient, along)
+        load%traction = hypot(way%tau(1), constants%plane%squeeze * way%tau(2))
+        load%loading = constants%tangential * dot_product(gradient, v)
+        load%stiffness = constants%tangential * dot_product(gradient, along)
         rates%inner = surface%state_rates(point%inner, load, rates%slip)
         traits = surface%traits()   ! an R leaves zero faster than at any rate
         jumps = traits%memory == 1 .and. rates%slip > 0.0_wp .and. .not. point%inner%r > 0.0_wp
@@ -104,43 +103,38 @@ contains
 
     !> Slip rate and traction at which damper and surface balance: where there are several, the
     !> least slip rate.
-    pure subroutine balance_damper(surface, damping, plane, pull, pressure, state, tau, along, &
-        rate, fails)
+    pure subroutine balance_damper(surface, constants, pull, pressure, state, way, rate, fails)
         class(law), intent(in) :: surface
-        real(wp), intent(in) :: damping       !! > 0 [F T/L^3]
-        type(orthotropy), intent(in) :: plane
-        real(wp), intent(in) :: pull(2)       !! traction without slip [F/L^2]
-        real(wp), intent(in) :: pressure      !! [F/L^2]
+        type(contact_constants), intent(in) :: constants   !! with a damper
+        real(wp), intent(in) :: pull(2)         !! traction without slip [F/L^2]
+        real(wp), intent(in) :: pressure        !! [F/L^2]
         type(law_state), intent(in) :: state
-        real(wp), intent(out) :: tau(2)       !! traction [F/L^2]
-        real(wp), intent(out) :: along(2)     !! unit vector of the slip
-        real(wp), intent(out) :: rate         !! of slip, >= 0 [L/T]
-        logical, intent(out) :: fails         !! it was not found
-        type(sliding_way) :: way
-        real(wp) :: trial, strength, by_rate, stiffness, x
+        type(sliding_way), intent(out) :: way   !! traction and direction of the slip are
+        real(wp), intent(out) :: rate           !! of slip, >= 0 [L/T]
+        logical, intent(out) :: fails           !! it was not found
+        real(wp) :: trial, strength, by_rate, stiffness, squeeze, x
         real(wp), parameter :: round_off = 64.0_wp * epsilon(1.0_wp)
 
         fails = .false.
         rate = 0.0_wp
-        tau = pull
-        along = 0.0_wp
-        trial = hypot(pull(1), plane%squeeze * pull(2))
+        way%tau = pull
+        way%along = 0.0_wp
+        squeeze = constants%plane%squeeze
+        trial = hypot(pull(1), squeeze * pull(2))
         call surface%resistance_at(state, 0.0_wp, pressure, strength, by_rate)
         if (trial <= strength * (1.0_wp + round_off)) return
-        if (plane%associated) then
-            associate (spring => associated_spring(damping, plane%squeeze, pull / damping, trial &
-                / damping))
+        if (constants%plane%associated) then
+            associate (spring => associated_spring(constants%damping, squeeze, pull &
+                / constants%damping, trial / constants%damping))
                 call balance(surface, spring, pressure, state, x, rate, strength, fails)
                 way = associated_way(spring, x, strength)
             end associate
-            tau = way%tau
-            along = way%along
         else
-            along = pull / hypot(pull(1), pull(2))
-            stiffness = damping * (trial / hypot(pull(1), pull(2)))
+            way%along = pull / hypot(pull(1), pull(2))
+            stiffness = constants%damping * (trial / hypot(pull(1), pull(2)))
             call balance(surface, unloading(trial, stiffness, trial / stiffness), pressure, state, &
                 x, rate, strength, fails)
-            tau = pull * (strength / trial)
+            way%tau = pull * (strength / trial)
         end if
     end subroutine balance_damper
 

@@ -77,9 +77,6 @@ module friction_law_choice
         real(wp) :: damping        !! of the damper beside the tangential spring [F T/L^3]
     end type surface_options
 
-    type(surface_options), parameter :: no_options = surface_options(tau_max=0.0_wp, &
-        plane=isotropic, cohesion=0.0_wp, damping=0.0_wp)
-
     !> Room for a law of whichever kind, of which one is in use.
     type :: law_storage
         class(named_law), pointer :: own   !! that one, without options
@@ -147,10 +144,27 @@ contains
         call choose_own_law(nprops, props, storage, own, place, status)
         if (status < 0) return
         surface => own
-        options = no_options
+        options%tau_max = 0.0_wp   ! one by one, as they are read
+        options%plane%squeeze = 1.0_wp
+        options%plane%associated = .false.
+        options%cohesion = 0.0_wp
+        options%damping = 0.0_wp
         if (nprops < place) return
         call options_of(nprops - place + 1, props(place:), options, status)
         if (status < 0) return
+        if (max(options%tau_max, options%cohesion, options%damping) > 0.0_wp) then
+            call take_options(options, storage, surface)
+        end if
+    end subroutine choose_law
+
+    !> The law under a shear cap, with cohesion, on a contact with a damper.
+    pure subroutine take_options(options, storage, surface)
+        type(surface_options), intent(in) :: options
+        type(law_storage), intent(inout), target :: storage   !! with the law without options
+        class(law), pointer, intent(inout) :: surface         !! in: that, out: with options
+        class(named_law), pointer :: own
+
+        own => storage%own
         if (options%damping > 0.0_wp) own%follows_path = .false.   ! where it starts is not known
         if (options%cohesion > 0.0_wp) then
             own%cohesion = options%cohesion
@@ -170,7 +184,7 @@ contains
             storage%capped%cohesion = options%cohesion
             surface => storage%capped
         end if
-    end subroutine choose_law
+    end subroutine take_options
 
     !> Reads the options.
     pure subroutine options_of(n, constants, options, status)
@@ -218,6 +232,7 @@ contains
         own%tau_max = huge(own%tau_max)
         own%cohesion = 0.0_wp
         own%pressure_start = 0.0_wp
+        own%pressure_blur = 0.0_wp
         if (number == law_subloading) call choose_form(storage, own)
         storage%own => own
     end subroutine choose_own_law

@@ -144,8 +144,19 @@ contains
         end do
         if (.not. solved) return
 
-        s = s + ds
-        y = y + y * dz
+        call conclude(self, s + ds, y + y * dz, pressure, dt, old, answer)
+        solved = answer%slip > 0.0_wp
+    end subroutine solve
+
+    !> What a slip and an R mean.
+    pure subroutine conclude(self, s, y, pressure, dt, old, answer)
+        class(subloading_exact_law), intent(in) :: self
+        real(wp), intent(in) :: s, y           !! slip [L] and -ln R
+        real(wp), intent(in) :: pressure, dt   !! [F/L^2], [T]
+        type(law_state), intent(in) :: old
+        type(sliding), intent(out) :: answer
+        real(wp) :: full, fall
+
         answer%slip = s
         answer%state%r = exp(-y)
         call friction_coefficient(self, s, dt, old, answer%state%mu, fall)
@@ -153,8 +164,7 @@ contains
         full = answer%state%mu * pressure + self%cohesion
         answer%resistance = answer%state%r * full
         answer%d_slip = full * self%m * y - pressure * answer%state%r * fall
-        solved = s > 0.0_wp
-    end subroutine solve
+    end subroutine conclude
 
     !> A start for any slip: with `R' = rate (1 - R)` and mu as at the beginning, backward Euler's
     !> step ends at the root of a quadratic. The positive root, taken where nothing cancels.

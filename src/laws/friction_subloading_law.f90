@@ -95,6 +95,17 @@ module friction_subloading_law
 
     integer, parameter :: n_needed = 5   !! of them; the others have defaults
 
+    !> What a slide starts from.
+    type :: slide_start
+        real(wp) :: c, w0       !! c and w(0) of section 3 [-]
+        real(wp) :: fall        !! of the strength with slip, by that of mu [F/L^3]
+        real(wp) :: healing     !! 1/w(0) of section 3 [-]
+        real(wp) :: excess      !! trial traction beyond the strength [F/L^2]
+        real(wp) :: full        !! traction of the normal sliding surface [F/L^2]
+        real(wp) :: stiffness   !! tangential stiffness [F/L^3]
+        real(wp) :: r           !! R [-]
+    end type slide_start
+
 contains
 
     pure subroutine read_constants(self, n, constants, n_own, status)
@@ -248,23 +259,18 @@ contains
         type(sliding), intent(out) :: answer
         logical, intent(out) :: solved
         integer, parameter :: max_iterations = 12
-        real(wp), parameter :: third = 1.0_wp / 3.0_wp
-        real(wp), parameter :: too_large = 2.0_wp**400   ! for the squares below
-        real(wp) :: c, w0, full, excess, s, r, e, iw, mu, mu_rate, log_r, r_rate, ms, gain, slack, &
-            misfit, ir, z, d, ds, dr, bend_s, bend_r
+        type(slide_start) :: start
+        real(wp) :: c, w0, full, s, r, e, iw, mu, mu_rate, log_r, r_rate, ms, gain, slack, misfit, &
+            ir, z, d, ds, dr, bend_s, bend_r
         integer :: iteration
-        logical :: near
 
+        call prepare(self, trial, stiffness, pressure, dt, old, start, solved)
+        if (.not. solved) return
+        c = start%c
+        w0 = start%w0
+        call start_near(self, start, s, r, e, solved)
+        if (.not. solved) call start_far(self, start, s, r, e)
         solved = .false.
-        c = weakening_reserve(self, dt, old)
-        w0 = 1.0_wp + self%xi * dt
-        iw = 1.0_wp / w0
-        if (stiffness * w0 <= pressure * self%kappa * (c * iw)) return   ! several are possible
-        full = (self%mu_k + c * iw) * pressure + self%cohesion
-        excess = trial - old%r * full
-        if (self%m * (full + trial) + self%kappa * w0 > too_large .or. .not. excess > 0.0_wp) return
-        call start_near(self, c, iw, excess, full, stiffness, pressure, old%r, s, r, e, near)
-        if (.not. near) call start_far(self, excess, full, stiffness, old%r, s, r, e)
         if (.not. r > 0.0_wp) return
 
         do iteration = 1, max_iterations
@@ -303,9 +309,44 @@ contains
 
         ! The last step, too small to need another logarithm.
         z = dr * ir
-        log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * third))
-        s = s + ds
-        r = r + dr
+        log_r = log_r + z * (1.0_wp - z * (0.5_wp - z / 3.0_wp))
+        call conclude(self, c, w0, pressure, s + ds, r + dr, log_r, answer)
+    end subroutine solve
+
+    !> May Newton's method be used here? Then what it starts from.
+    pure subroutine prepare(self, trial, stiffness, pressure, dt, old, start, possible)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: trial, stiffness, pressure, dt   !! as of `solve`
+        type(law_state), intent(in) :: old
+        type(slide_start), intent(inout) :: start   !! out
+        logical, intent(out) :: possible
+        real(wp), parameter :: too_large = 2.0_wp**400   ! for its squares
+
+        possible = .false.
+        start%c = weakening_reserve(self, dt, old)
+        start%w0 = 1.0_wp + self%xi * dt
+        start%healing = 1.0_wp / start%w0
+        start%fall = self%kappa * (start%c * start%healing)
+        if (stiffness * start%w0 <= pressure * start%fall) return   ! several are possible
+        start%full = (self%mu_k + start%c * start%healing) * pressure + self%cohesion
+        start%excess = trial - old%r * start%full
+        if (self%m * (start%full + trial) + self%kappa * start%w0 > too_large) return
+        start%fall = start%fall * start%healing * pressure
+        start%stiffness = stiffness
+        start%r = old%r
+        possible = start%excess > 0.0_wp
+    end subroutine prepare
+
+    !> What a slip and an R mean.
+    pure subroutine conclude(self, c, w0, pressure, s, r, log_r, answer)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: c, w0      !! c and w(0) of section 3 [-]
+        real(wp), intent(in) :: pressure   !! contact pressure [F/L^2]
+        real(wp), intent(in) :: s          !! slip [L]
+        real(wp), intent(in) :: r, log_r   !! R and its logarithm
+        type(sliding), intent(out) :: answer
+        real(wp) :: iw, mu, full
+
         iw = 1.0_wp / (w0 + self%kappa * s)
         mu = self%mu_k + c * iw
         answer%slip = s
@@ -316,36 +357,33 @@ contains
         answer%resistance = r * full
         answer%d_slip = -r * (full * self%m * log_r / (r + self%m * s) + pressure * self%kappa * c &
             * iw**2)
-    end subroutine solve
+    end subroutine conclude
 
     !> A start for little slip: two terms of the expansion of (s, R) in the excess traction.
-    pure subroutine start_near(self, c, iw0, excess, full, stiffness, pressure, r_n, s, r, e, good)
+    pure subroutine start_near(self, start, s, r, e, good)
         class(subloading_law), intent(in) :: self
-        real(wp), intent(in) :: c, iw0      !! c and 1/w(0) of section 3 [-]
-        real(wp), intent(in) :: excess      !! trial traction beyond the strength [F/L^2]
-        real(wp), intent(in) :: full        !! traction of the normal sliding surface [F/L^2]
-        real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
-        real(wp), intent(in) :: pressure    !! contact pressure [F/L^2]
-        real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
+        type(slide_start), intent(in) :: start
         real(wp), intent(out) :: s, r, e    !! slip [L], R and 1 - R
         logical, intent(out) :: good        !! R changes so little that the expansion holds
         real(wp), parameter :: little = 0.2_wp, least_ratio = 1.0e-3_wp
-        real(wp) :: fall, rate, d, dr, bend_s, bend_r
+        real(wp) :: r_n, full, fall, rate, d, dr, bend_s, bend_r
 
+        r_n = start%r
+        full = start%full
+        fall = start%fall
         s = 0.0_wp
         r = r_n
         e = 1.0_wp - r_n
-        fall = self%kappa * c * iw0**2 * pressure
         ! too much slip, to judge by `-ln R >= 2 (1 - R)/(1 + R)` and before any logarithm?
-        good = r_n > least_ratio .and. self%m * excess * (1.0_wp + r_n) <= little * r_n &
-            * ((stiffness - r_n * fall) * (1.0_wp + r_n) + 2.0_wp * self%m * e * full)
+        good = r_n > least_ratio .and. self%m * start%excess * (1.0_wp + r_n) <= little * r_n &
+            * ((start%stiffness - r_n * fall) * (1.0_wp + r_n) + 2.0_wp * self%m * e * full)
         if (.not. good) return
         rate = -self%m * log(r_n)
-        d = 1.0_wp / (stiffness - r_n * fall + full * rate)
-        s = excess * d
+        d = 1.0_wp / (start%stiffness - r_n * fall + full * rate)
+        s = start%excess * d
         dr = rate * s
         bend_r = dr * s * (self%m / r_n)
-        bend_s = (fall * s * (dr - self%kappa * iw0 * r_n * s) + full * bend_r) * d
+        bend_s = (fall * s * (dr - self%kappa * start%healing * r_n * s) + full * bend_r) * d
         bend_r = rate * bend_s - bend_r
         good = dr <= little * min(r, e) .and. self%m * s <= little * r_n .and. abs(bend_r) &
             <= little * dr
@@ -356,24 +394,22 @@ contains
 
     !> A start for any slip: `-ln R ~ rate/m (1 - R)`, right at R_n, and `mu ~ mu(0)` make the
     !> equation a quadratic. Its positive root, taken where nothing cancels.
-    pure subroutine start_far(self, excess, full, stiffness, r_n, s, r, e)
+    pure subroutine start_far(self, start, s, r, e)
         class(subloading_law), intent(in) :: self
-        real(wp), intent(in) :: excess       !! trial traction beyond the strength [F/L^2]
-        real(wp), intent(in) :: full         !! traction of the normal sliding surface [F/L^2]
-        real(wp), intent(in) :: stiffness    !! tangential stiffness [F/L^3]
-        real(wp), intent(in) :: r_n          !! R at the start of the increment [-]
+        type(slide_start), intent(in) :: start
         real(wp), intent(out) :: s, r, e     !! slip [L], R and 1 - R
-        real(wp) :: e_n, z, rate, b, root, shrink
+        real(wp) :: r_n, e_n, z, rate, b, root, shrink
 
+        r_n = start%r
         e_n = 1.0_wp - r_n
         z = e_n / (1.0_wp + r_n)
         rate = self%m * (1.0_wp + z) * (1.0_wp + z**2 / (3.0_wp - 1.8_wp * z**2))
-        b = 0.5_wp * (stiffness + rate * (e_n * full - excess))
-        root = sqrt(b**2 + stiffness * rate * excess)
+        b = 0.5_wp * (start%stiffness + rate * (e_n * start%full - start%excess))
+        root = sqrt(b**2 + start%stiffness * rate * start%excess)
         if (b > 0.0_wp) then
-            s = excess / (b + root)
+            s = start%excess / (b + root)
         else
-            s = (root - b) / (stiffness * rate)
+            s = (root - b) / (start%stiffness * rate)
         end if
         shrink = 1.0_wp / (1.0_wp + rate * s)
         r = (r_n + rate * s) * shrink

@@ -180,8 +180,7 @@ contains
         type(load_case), intent(in) :: this
         real(qp), intent(in) :: tau(2), slid(2), equivalent, trial
         real(dp), intent(inout) :: residual
-        real(qp) :: along(2), s, error, worst, work, gained, blur(2), misfit(2), scale(2), own, &
-            strength_scale, normal(2)
+        real(qp) :: along(2), s, error, worst, work, gained, blur(2), misfit(2), scale(2), normal(2)
 
         kind_ = 0
         error = 8.0_qp * eps * this%q_scale
@@ -217,19 +216,7 @@ contains
         if (creeps(mat%law) .and. s < max(1.0e-90_qp * mat%own(3), 100.0_qp * error)) then
             misfit = 0.0_qp
         end if
-        if (equivalent >= mat%tau_max * (1.0_qp - 64.0_qp * eps)) then   ! the cap holds
-            own = this%p * t%new(5) + mat%cohesion
-            if (mat%law == 1) own = own * t%new(6)
-            if (equivalent > mat%tau_max * (1.0_qp + 64.0_qp * eps)) return
-            if (own < mat%tau_max * (1.0_qp - 1.0e3_qp * eps)) return
-        else
-            own = this%p * t%new(5) + mat%cohesion
-            if (mat%law == 1) own = own * t%new(6)
-            strength_scale = trial + own
-            worst = abs(equivalent - own) / strength_scale
-            residual = max(residual, real(worst, dp))
-            if (worst > 64.0_qp * eps) return
-        end if
+        if (.not. carries(t, mat, this, equivalent, trial, residual)) return
         worst = maxval(abs(misfit) / (scale + blur / eps))
         residual = max(residual, real(worst, dp))
         if (worst > 128.0_qp * eps) return
@@ -273,6 +260,27 @@ contains
         end subroutine vary_start
 
     end function sliding_fault
+
+    !> Does a surface that slides carry what its law says, or its cap?
+    logical function carries(t, mat, this, equivalent, trial, residual)
+        type(trial_of), intent(in) :: t
+        type(material), intent(in) :: mat
+        type(load_case), intent(in) :: this
+        real(qp), intent(in) :: equivalent, trial   !! traction at the end, and without slip
+        real(dp), intent(inout) :: residual
+        real(qp) :: own, worst
+
+        own = this%p * t%new(5) + mat%cohesion
+        if (mat%law == 1) own = own * t%new(6)
+        if (equivalent >= mat%tau_max * (1.0_qp - 64.0_qp * eps)) then   ! the cap holds
+            carries = equivalent <= mat%tau_max * (1.0_qp + 64.0_qp * eps) &
+                .and. own >= mat%tau_max * (1.0_qp - 1.0e3_qp * eps)
+        else
+            worst = abs(equivalent - own) / (trial + own)
+            residual = max(residual, real(worst, dp))
+            carries = worst <= 64.0_qp * eps
+        end if
+    end function carries
 
     !> Scans the curve of the spring against the law for equilibria before the one returned, and
     !> behind it.

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Procedures: none is longer than a screen, none takes more arguments than one can keep in mind.
+
+    tests/check_procedures.py [ROOT]
+
+Looks at all Fortran below src, driver, tests, bench and examples. A procedure has at most 60 lines, those of
+the procedures inside it not counted, and eight arguments, the object that it belongs to (`self`) not counted.
+EXCEPTIONS names those that may have more, with the reason; one that is not needed is a fault, too. Exit status
+1 with a line for each fault.
+"""
+import pathlib
+import re
+import sys
+
+FOLDERS = ('src', 'driver', 'tests', 'bench', 'examples')
+LONGEST = 60   # lines of a procedure
+WIDEST = 8     # arguments
+
+HOST = "the host's own argument list"
+C = 'as published in friction.h: C has no arrays with bounds'
+PUBLISHED = 'a published argument list'
+LAPACK = "LAPACK's argument list"
+BOUNDS = 'the arrays of a published call, which travel without descriptors, with their sizes'
+KERNEL = 'the arrays of a block of points, passed to a kernel as C passes them'
+ADAPTER = "the numbers of a host's call, handed on as they come"
+WORK = "arrays of all unknowns or blocks, the caller's, so that no step allocates"
+LOOPS = 'loops over one block, whose temporary numbers stay in registers'
+
+# (file, procedure): reason; '*' for all procedures of a file
+EXCEPTIONS = {
+    ('src/adapters/abaqus_fric.f90', '*'): HOST,
+    ('src/adapters/abaqus_uinter.f90', '*'): HOST,
+    ('src/adapters/abaqus_umat.f90', '*'): HOST,
+    ('src/adapters/abaqus_vfric.f90', '*'): HOST,
+    ('src/adapters/abaqus_vfriction.f90', '*'): HOST,
+    ('src/adapters/abaqus_vuinter.f90', '*'): HOST,
+    ('src/adapters/calculix_umat.f90', '*'): HOST,
+    ('src/adapters/entry_fric.f90', '*'): HOST,
+    ('src/adapters/entry_uinter.f90', '*'): HOST,
+    ('src/adapters/entry_umat.f90', '*'): HOST,
+    ('src/adapters/entry_vfric.f90', '*'): HOST,
+    ('src/adapters/entry_vfriction.f90', '*'): HOST,
+    ('src/adapters/entry_vuinter.f90', '*'): HOST,
+    ('src/adapters/kratos_umat.f90', '*'): HOST,
+    ('tests/unit/abaqus_explicit_calls.f90', '*'): HOST,
+    ('tests/unit/abaqus_standard_calls.f90', '*'): HOST,
+    ('tests/unit/calculix_calls.f90', '*'): HOST,
+    ('tests/unit/kratos_calls.f90', '*'): HOST,
+    ('driver/model/linear_stability.f90', 'dgeev'): LAPACK,
+    ('driver/stepping/rosenbrock.f90', 'dgetrs'): LAPACK,
+    ('tests/unit/test_linear_stability.pf', 'dgeev'): LAPACK,
+    ('src/friction_c.f90', '*'): C,
+    ('src/friction_mod.f90', 'friction_update_frame'): PUBLISHED,
+    ('src/friction_mod.f90', 'friction_tangential'): PUBLISHED,
+    ('src/friction_mod.f90', 'update_arrays_batch'): BOUNDS,
+    ('src/friction_mod.f90', 'slip_rates_of_arrays'): BOUNDS,
+    ('src/friction_batch.f90', 'update_arrays_batch'): BOUNDS,
+    ('src/friction_batch.f90', 'update_range'): BOUNDS,
+    ('src/friction_batch.f90', 'update_lanes'): BOUNDS,
+    ('src/friction_batch.f90', 'update_copies'): BOUNDS,
+    ('src/friction_points.f90', 'update_transposed'): BOUNDS,
+    ('src/friction_slip_rate.f90', 'slip_rates_of_arrays'): BOUNDS,
+    ('src/friction_slip_rate.f90', 'try_kernel'): BOUNDS,
+    ('src/friction_batch.f90', 'subloading_kernel'): KERNEL,
+    ('src/friction_batch.f90', 'call_kernel'): KERNEL,
+    ('src/friction_slip_rate.f90', 'slip_rate_kernel'): KERNEL,
+    ('src/friction_slip_rate_kernel.f90', 'slip_rates_of_block'): KERNEL,
+    ('src/friction_subloading_kernel.f90', 'update_block'): KERNEL,
+    ('src/friction_subloading_kernel.f90', 'finish'): LOOPS,
+    ('src/adapters/friction_explicit.f90', 'tangential'): ADAPTER,
+    ('src/adapters/friction_finite_layer.f90', 'finite_layer_update'): ADAPTER,
+    ('src/adapters/friction_host.f90', 'host_update'): ADAPTER,
+    ('src/adapters/friction_host.f90', 'host_tangential'): ADAPTER,
+    ('src/adapters/friction_host.f90', 'interface_update'): ADAPTER,
+    ('src/adapters/friction_layer.f90', 'layer_update'): ADAPTER,
+    ('tests/unit/test_laws_abaqus_explicit.pf', 'compare_vfric'): ADAPTER,
+    ('driver/model/slider_system.f90', 'friction_forces'): WORK,
+    ('driver/model/slider_system.f90', 'forces_on_part'): WORK,
+    ('driver/stepping/dormand_prince.f90', 'dormand_prince_step'): WORK,
+    ('driver/stepping/rosenbrock.f90', 'rosenbrock_step'): WORK,
+    ('driver/stepping/rosenbrock.f90', 'differentiate'): WORK,
+    ('bench/explicit_slider.f90', 'solve_explicitly'): 'one integrator from its start to its end, for a bench',
+}
+
+PREFIX = r'(?:(?:pure|elemental|impure|recursive|module|integer|real|logical|character|type)(?:\s*\([^)]*\))?\s+)*'
+START = re.compile(r'^\s*(end\s+)?' + PREFIX + r'(subroutine|function|procedure)\s+(\w+)(?:\s*\(([^)]*)\))?')
+INTERFACE = re.compile(r'^\s*(end\s+)?(?:abstract\s+)?interface\b')
+
+
+def statements(text):
+    """Statements without comments, each with the number of lines it takes."""
+    statement, lines = '', 0
+    for line in text.splitlines():
+        lines += 1
+        code = re.sub(r"'[^']*'|\"[^\"]*\"", '', line).split('!')[0].rstrip()
+        statement += re.sub(r'^\s*&', '', code) if statement else code
+        if statement.endswith('&'):
+            statement = statement[:-1]
+            continue
+        yield statement, lines
+        statement, lines = '', 0
+
+
+def procedures(text):
+    """Name, lines and arguments of each procedure; of those of interfaces the lines are no matter."""
+    stack = []
+    in_interface = False
+    for statement, lines in statements(text):
+        interface = INTERFACE.match(statement)
+        if interface:
+            in_interface = not interface.group(1)
+        for outer in stack[-1:]:
+            outer[1] += lines
+        found = START.match(statement)
+        if not found or re.match(r'^\s*(module\s+)?procedure\s*(,|::|\()', statement):
+            continue
+        if found.group(1):
+            if stack:
+                yield stack.pop()
+        else:
+            if in_interface and found.group(2) == 'procedure':
+                continue   # a list of names
+            for outer in stack[-1:]:
+                outer[1] -= lines   # its first line belongs to the procedure inside
+            arguments = [name.strip() for name in (found.group(4) or '').split(',') if name.strip()]
+            stack.append([found.group(3), lines, len(arguments) - (arguments[:1] == ['self'])])
+
+
+def check(root):
+    faults, used = [], set()
+    for path in sorted(path for folder in FOLDERS for path in (root / folder).rglob('*')):
+        if path.suffix not in ('.f90', '.pf'):
+            continue
+        file = path.relative_to(root).as_posix()
+        for name, lines, arguments in procedures(path.read_text()):
+            wrong = []
+            if lines > LONGEST:
+                wrong.append(f'has {lines} lines, more than {LONGEST}')
+            if arguments > WIDEST:
+                wrong.append(f'takes {arguments} arguments, more than {WIDEST}')
+            allowed = {(file, name), (file, '*')} & set(EXCEPTIONS)
+            if wrong:
+                used |= allowed
+                if not allowed:
+                    faults.append(f'{file}: {name} ' + ' and '.join(wrong))
+    faults += [f'{file}: {name} needs no exception any more' for file, name in set(EXCEPTIONS) - used]
+    return faults
+
+
+def main():
+    here = pathlib.Path(__file__).resolve().parent.parent
+    faults = check(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here)
+    print('\n'.join(faults) if faults else 'procedures: none is too long, none takes too many arguments')
+    sys.exit(bool(faults))
+
+
+if __name__ == '__main__':
+    main()
