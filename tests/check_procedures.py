@@ -67,6 +67,7 @@ EXCEPTIONS = {
     ('src/friction_slip_rate_kernel.f90', 'slip_rates_of_block'): KERNEL,
     ('src/friction_subloading_kernel.f90', 'update_block'): KERNEL,
     ('src/friction_subloading_kernel.f90', 'finish'): LOOPS,
+    ('src/lanes/friction_rate_state_lanes.f90', 'step'): LOOPS,
     ('src/adapters/friction_explicit.f90', 'tangential'): ADAPTER,
     ('src/adapters/friction_finite_layer.f90', 'finite_layer_update'): ADAPTER,
     ('src/adapters/friction_host.f90', 'host_update'): ADAPTER,

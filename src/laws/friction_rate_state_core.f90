@@ -191,8 +191,10 @@ contains
         real(wp), intent(in) :: mean   !! (1 - e^-x)/x
         real(wp) :: fall
         real(wp), parameter :: small = 1.0e-3_wp   !! below, the series is exact to round-off
+        real(wp) :: y
 
-        fall = 0.5_wp - x * (1.0_wp / 3.0_wp - x * (0.125_wp - x * (1.0_wp / 30.0_wp - x &
+        y = min(x, small)   ! no powers of a large one, which overflow
+        fall = 0.5_wp - y * (1.0_wp / 3.0_wp - y * (0.125_wp - y * (1.0_wp / 30.0_wp - y &
             / 144.0_wp)))
         if (x > small) fall = (mean - left) / max(x, small)   ! lanes divide in any case
     end function fall_of_mean

@@ -9,7 +9,7 @@ module path_checks
     implicit none
     private
 
-    public :: check_equations, check_first_root, check_hold, check_range, check_tangent, &
+    public :: capped, check_equations, check_first_root, check_hold, check_range, check_tangent, &
         expects_time, viscous_of
 
     !> Kinds of faults.
@@ -241,6 +241,7 @@ contains
             call evolution_misfits(mat, this, s_, mu, r * (1.0_qp - eps), minus, unused)
             blur = blur + abs(plus - misfit) + abs(minus - misfit)
             if (mat%law == 1 .and. mat%form == 3) call vary_start(mu, r, s_, misfit, blur)
+            if (mat%law == 8) call vary_pressing(mu, r, s_, misfit, blur)
         end subroutine evolve
 
         !> Where sliding starts is a small difference, if the traction turns back.
@@ -258,6 +259,19 @@ contains
             call evolution_misfits(mat, varied, s_, mu, r, plus, unused)
             blur = blur + abs(plus - misfit)
         end subroutine vary_start
+
+        !> The pressures are products that round.
+        subroutine vary_pressing(mu, r, s_, misfit, blur)
+            real(qp), intent(in) :: mu, r, s_, misfit(2)
+            real(qp), intent(inout) :: blur(2)
+            type(load_case) :: varied
+            real(qp) :: plus(2), unused(2)
+
+            varied = this
+            varied%pressing = this%pressing + eps * mat%own(6) / mat%own(2)
+            call evolution_misfits(mat, varied, s_, mu, r, plus, unused)
+            blur = blur + abs(plus - misfit)
+        end subroutine vary_pressing
 
     end function sliding_fault
 
@@ -359,6 +373,16 @@ contains
         end function peak_near
 
     end function check_first_root
+
+    !> Does the shear cap hold an increment that slips?
+    logical function capped(t)
+        type(trial_of), intent(in) :: t
+        type(material) :: mat
+
+        call read_material(t%props, mat)
+        capped = nint(t%new(1)) == 2 .and. norm2([real(t%traction(2), qp), t%traction(3) &
+            / mat%rho]) >= mat%tau_max * (1.0_qp - 64.0_qp * eps)
+    end function capped
 
     !> From no slip to all of it: every decade of it, evenly, and around the kink of laws 5 and 6.
     subroutine fill_grid(mat, this, x)

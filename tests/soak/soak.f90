@@ -13,7 +13,7 @@ program soak
         friction_no_convergence, friction_tangential, friction_update, friction_update_batch, &
         friction_update_frame, friction_zero_time_increment
     use independent_laws, only : creeps
-    use path_checks, only : check_equations, check_first_root, check_range, check_tangent, &
+    use path_checks, only : capped, check_equations, check_first_root, check_range, check_tangent, &
         check_hold, expects_time, k_batch, k_batch_status, k_code, k_convergence, k_entry, &
         k_hold, k_refused, kinds, n_kinds, tally, trial_of, viscous_of
     use path_draws, only : draw_increment, draw_props, draw_state, draw_time, path, points
@@ -235,7 +235,7 @@ contains
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: state(8), traction(:)
         real(dp) :: apart
-        real(dp) :: force, length, condition, inner(2), damper
+        real(dp) :: force, length, slip, condition, inner(2), damper
         integer :: m
 
         m = size(traction)
@@ -250,6 +250,10 @@ contains
         inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
         ! Their friction is mu_s less what the slip D took away, which rounds by that of mu_s.
         if (any(nint(t%props(1)) == [5, 6])) inner = max(inner, [t%props(4), length])
+        ! Under a cap R does not follow from the traction but from the slip, a difference.
+        slip = t%new(7) - t%old(7)
+        if (nint(t%props(1)) == 1 .and. slip > 0.0_dp .and. capped(t)) inner = max(inner, &
+            abs(t%new(5:6) - t%old(5:6)) * (length / slip))
         apart = max(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
         if (creeps(nint(t%props(1)))) condition = condition + blur_of_state(t, length) / 300.0_dp
         apart = max(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
