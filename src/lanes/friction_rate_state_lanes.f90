@@ -151,7 +151,8 @@ contains
                 - ln_most_theta, ln_least_slip - (after%z(i) - state%ln_d_c(i)))
             ! round-off of the traction is more of the slip, whose logarithm counts
             steepness = max(abs(after%by_ln_slip(i)), abs(1.0_wp + state%b_over_a(i) &
-                * after%by_ln_slip(i)) * min(1.0_wp, constants(i, c_a) / block%mu_end(i)))
+                * after%by_ln_slip(i)) * (constants(i, c_a) / max(constants(i, c_a), &
+                block%mu_end(i))))
             if (block%slip(i) * block%stiffness(i) < most_digits * steepness * block%trial(i)) then
                 block%left(i) = 1.0_wp
             end if
