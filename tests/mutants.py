@@ -5,9 +5,10 @@ each until one fails. Changes that no test notices are listed.
 What is changed: a comparison and its bound (< and <=), the sense of a comparison, a sign, an operation, .and. and .or.,
 a .not., a coefficient, min and max, and conditions of one line, which are dropped with what they do.
 
-A mutant is one source, compiled alone and loaded before the library (LD_PRELOAD); nothing else is built for it. Tests that
-noticed others of its file come first, then the short ones. What an optimising compiler makes the same object of is no change.
-Results go into a journal as they come, and what it holds is not tried again, but survivors are.
+All mutants are compiled at once, and a number chooses one when a test runs (mutant_switches.py). Only tests for which it has
+another value somewhere can notice it: of these, tests that noticed others of its file come first, then the short ones. What an
+optimising compiler makes the same object of is no change. Results go into a journal as they come, and what it holds is not
+tried again, but survivors are.
 
 A survivor that makes no difference belongs into tests/mutants_equivalent.txt: file | line | mutation | reason, where ...
 stands for anything. Lines are found again by their text.
@@ -29,6 +30,8 @@ import subprocess
 import sys
 import tempfile
 
+import mutant_switches
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 EQUIVALENT = ROOT / 'tests/mutants_equivalent.txt'
 REPLACEMENTS = [
@@ -39,6 +42,8 @@ REPLACEMENTS = [
     (r'\bmax\(', ('min(',)), (r'\bmin\(', ('max(',)),
 ]
 NUMBER = re.compile(r'\b\d+\.\d+(?:e-?\d+)?_wp')
+SCRIPTS = ('test_host_errors', 'test_mgis')   # among the tests, those that reach what no program does
+MOST = 2000   # mutants of a file
 NO_STATEMENT = re.compile(r'^\s*($|!|use |end\b|contains|implicit|private|public|import|interface|abstract|module |submodule'
                           r'|(pure |elemental |module |recursive )*(subroutine|function)\b|procedure|type\b|else$|select|case )')
 CONDITION = re.compile(r'^(\s*)if \(.*\) (return|exit|cycle|\w+(%\w+)* = .*)$')
@@ -115,36 +120,56 @@ def run(command, **options):
 
 
 class Test:
-    """A program of the test suite: its command, where it runs, the sources that it holds, the time that it takes."""
+    """A test of the suite: its command, where it runs, the sources that it holds, the time that it takes."""
 
-    def __init__(self, name, command, folder, program, sources):
-        self.name, self.command, self.folder, self.sources = name, [str(program), *command[1:]], folder, sources
-        self.seconds = 0.0
+    def __init__(self, name, command, folder, sources=(), environment=()):
+        self.name, self.command, self.folder, self.sources = name, command, folder, sources
+        self.environment = dict(setting.split('=', 1) for setting in environment)
+        self.seconds, self.notes = 0.0, b''
 
-    def passes(self, preload=(), limit=1000.0, **environment):
-        """Runs with libraries that come first; the limit is one of CPU time, since the machine may be busy."""
-        environment = dict(os.environ, **environment, LD_PRELOAD=':'.join(map(str, preload)), OMP_NUM_THREADS='2', OMP_WAIT_POLICY='passive')
-        limits = (int(limit) + 1, int(limit) + 2)
+    def passes(self, mutant=0, preload=(), limit=1000.0, **environment):
+        """Runs with a mutant, or with libraries that come first; the limit is one of CPU time, since the machine may be busy."""
+        environment = dict(os.environ, **self.environment, **environment, LD_PRELOAD=':'.join(map(str, preload)), OMP_NUM_THREADS='2', OMP_WAIT_POLICY='passive',
+                           STICKSLIP_MUTANT=str(mutant), STICKSLIP_SECONDS=str(limit))
         try:
-            return run(self.command, cwd=self.folder, env=environment, timeout=60 * limit + 60,
-                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limits)).returncode == 0
+            return run(self.command, cwd=self.folder, env=environment, timeout=60 * limit + 60).returncode == 0
         except (subprocess.TimeoutExpired, UnicodeDecodeError):
             return False
 
+    def measure(self, limit):
+        begun = resource.getrusage(resource.RUSAGE_CHILDREN)
+        passes = self.passes(limit=2 * limit)
+        self.seconds = 0.005 + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - sum(begun[:2])
+        return passes
+
+    def take_notes(self, folder, size):
+        """Which mutants' statements it reaches, and which would have another value; whatever it does, if it fails like that."""
+        notes = folder / f'{self.name}.notes'
+        notes.write_bytes(bytes(size + 1))
+        passes, before = False, None
+        while not passes and notes.read_bytes() != before:   # until no value is asked for that ends the program
+            before = notes.read_bytes()
+            passes = self.passes(-1, STICKSLIP_NOTES=str(notes), STICKSLIP_MUTANTS=str(size), GFORTRAN_ERROR_BACKTRACE='0')
+        self.notes = notes.read_bytes() if passes else bytes([3]) * (size + 1)
+        return passes
+
 
 class Base:
-    """The library and the test programs as they are. The programs load the library, so that one object that is loaded before
-    it stands for a changed file: neither are other files compiled for a mutant nor is anything linked again."""
+    """The library and the test programs, built of a copy of the project in which each source holds its mutants: a number in
+    the environment chooses one (mutant_switches.py). What cannot be put so is compiled alone and loaded first (LD_PRELOAD)."""
 
-    def __init__(self, limit, jobs):
-        self.build = ROOT / 'build/mutants'
-        for command in (['cmake', '-S', str(ROOT), '-B', str(self.build), '-G', 'Unix Makefiles', '-DSTICKSLIP_BUILD_DRIVER=OFF',
-                         '-DSTICKSLIP_VECTOR_KERNELS=OFF'], ['cmake', '--build', str(self.build), f'-j{jobs}']):
+    def __init__(self, limit, jobs, every):
+        self.build, self.tree, self.settled = (ROOT / 'build/mutants' / name for name in ('build', 'tree', 'settled'))
+        self.number_of = {}
+        self.switch(every)
+        fortran = ['-DCMAKE_BUILD_TYPE=Release', '-DCMAKE_Fortran_FLAGS_RELEASE=-O1 -ffree-line-length-none']
+        for command in (['cmake', '-S', str(self.tree), '-B', str(self.build), '-G', 'Unix Makefiles', '-DSTICKSLIP_BUILD_DRIVER=OFF',
+                         '-DSTICKSLIP_VECTOR_KERNELS=OFF', *fortran], ['cmake', '--build', str(self.build), f'-j{jobs}']):
             built = run(command)
             if built.returncode:
                 sys.exit('The sources do not build as they are:\n' + built.stdout[-3000:])
-        self.modules = sorted({path.parent for path in self.build.rglob('*.mod')}, key=lambda path: (path.parts[-3:-1] != ('mutants', 'src'), path))
-        paths = {path.name: path for path in sorted((ROOT / 'src').rglob('*.f90'))}
+        self.modules = sorted({path.parent for path in self.build.rglob('*.mod')}, key=lambda path: (path.parts[-3:-1] != ('build', 'src'), path))
+        paths = {path.name: path for path in sorted((self.tree / 'src').rglob('*.f90'))}
         self.libraries, self.contents, self.objects = {}, {}, {}
         for archive in self.build.rglob('lib*.a'):
             library = self.libraries[archive.stem] = self.build / 'shared' / f'{archive.stem}.so'
@@ -154,54 +179,75 @@ class Base:
             for single in set(self.contents[library]) & {'stickslip_abaqus_standard.f90', 'stickslip_abaqus_explicit.f90'}:
                 source = self.build / 'src/adapters' / single
                 self.contents[library] += [name for name, path in paths.items() if path.read_text() in source.read_text()]
-                if not self.compile(source, library.parent, '-O0', '-shared', '-o', str(library)):   # nothing is inlined
-                    sys.exit(f'{single} does not compile')
-        order = [name for name in self.contents[self.libraries['libstickslip']] if name in paths]   # what is used comes first
-        self.sources = [paths.pop(name) for name in order] + list(paths.values())
+        self.sources = self.in_order()
         self.tests = []
         listed = json.loads(run(['ctest', '--test-dir', str(self.build), '--show-only=json-v1']).stdout)
         for test in listed['tests']:
+            settings = {item['name']: item['value'] for item in test['properties']}
             target = pathlib.Path(test['command'][0]).name
             link = self.build / f'tests/CMakeFiles/{target}.dir/link.txt'
-            if link.exists() and 'build' not in ' '.join(test['command'][1:]):   # others are scripts or load a library by its place
-                folder = {item['name']: item['value'] for item in test['properties']}['WORKING_DIRECTORY']
-                self.tests.append(Test(test['name'], test['command'], folder, *self.linked(target, link.read_text())))
+            if test['name'] in SCRIPTS:
+                self.tests.append(Test(test['name'], test['command'], settings['WORKING_DIRECTORY'], environment=settings['ENVIRONMENT']))
+            elif link.exists() and 'build' not in ' '.join(test['command'][1:]):   # others are scripts or load a library by its place
+                program, sources = self.linked(target, link.read_text())
+                self.tests.append(Test(test['name'], [str(program), *test['command'][1:]], settings['WORKING_DIRECTORY'], sources))
         for test in self.tests:
-            begun = resource.getrusage(resource.RUSAGE_CHILDREN)
-            passes = test.passes(limit=limit)
-            test.seconds = 0.005 + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - sum(begun[:2])
-            if not passes and test.seconds <= limit:
+            if not test.measure(limit) and test.seconds <= limit:
                 sys.exit(f'{test.name} fails on the sources as they are')
         self.tests = [test for test in self.tests if test.seconds <= limit]
-        self.lines = {test.name: self.lines_of(test) for test in self.tests if 'friction_mod.f90' in test.sources}
+        for test in self.tests:
+            if not test.take_notes(self.build, MOST * len(self.sources)):
+                print(f'{test.name} fails when it takes notes: no mutant is left out')
 
-    def lines_of(self, test):
-        """How often a test runs each line of the library: file name -> line -> count."""
-        folder = self.build / 'coverage'
-        library = folder / 'library.so'
-        if not library.exists() or library.stat().st_mtime < self.libraries['libstickslip'].stat().st_mtime:
-            shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir()
-            library_sources = [source for source in self.sources if source.name in self.contents[self.libraries['libstickslip']]]
-            if not self.compile(library_sources[-1], folder, '-O0', '--coverage', '-shared', '-o', str(library), *map(str, library_sources[:-1])):
-                sys.exit('no coverage')
-        place = folder / test.name
-        if not place.exists():
-            place.mkdir()
-            test.passes([library], GCOV_PREFIX=str(place), GCOV_PREFIX_STRIP='99')
-            for notes in folder.glob('*.gcno'):
-                shutil.copy(notes, place)
-        found = subprocess.run(['gcov', '--json-format', '--stdout', *place.glob('*.gcda')], cwd=place, text=True, capture_output=True, check=True)
-        return {pathlib.Path(file['file']).name: {line['line_number']: line['count'] for line in file['lines']}
-                for line in found.stdout.splitlines() for file in json.loads(line)['files']}
+    def in_order(self):
+        """The sources of the library, what is used first."""
+        text = {source: source.read_text() for source in sorted((ROOT / 'src').rglob('*.f90'))}
+        home = {name: source for source in text for name in re.findall(r'^module (\w+)$', text[source], re.MULTILINE)}
+        ordered = []
 
-    def runs(self, test, mutant):
-        """Whether a test runs the statement that a mutant changes; true where that is not known."""
-        lines, number = mutant.text.splitlines(), mutant.number
-        while number > 1 and code_of(lines[number - 2]).rstrip().endswith('&'):
-            number -= 1
-        counts = self.lines.get(test.name, {}).get(pathlib.Path(mutant.file).name, {})
-        return any(counts.get(line, 1) > 0 for line in range(number, mutant.number + 1))
+        def add(source):
+            for name in re.findall(r'^ *(?:use |submodule *\()(\w+)', text[source], re.MULTILINE):
+                if home.get(name, source) not in (source, *ordered):
+                    add(home[name])
+            if source not in ordered:
+                ordered.append(source)
+        for source in text:
+            add(source)
+        return ordered
+
+    def switch(self, every):
+        """Makes the copy of the project."""
+        of_file = collections.defaultdict(list)
+        for mutant in every:
+            of_file[mutant.file].append(mutant)
+        for folder in (self.settled, self.build):
+            folder.mkdir(parents=True, exist_ok=True)
+        support = ROOT / 'tests/support'
+        library = self.settled / 'libmutant_switch.so'
+        run(['gcc', '-O1', '-shared', '-fPIC', str(support / 'mutant_switch.c'), '-o', str(library)], check=True)
+        files = {path.relative_to(ROOT): path.read_bytes() for folder in ('src', 'tests', 'include', 'cmake', 'docs', 'examples')
+                 for path in (ROOT / folder).rglob('*') if path.is_file() and '__pycache__' not in path.parts}
+        files.update({pathlib.Path(name): (ROOT / name).read_bytes() for name in ('CMakeLists.txt', 'LICENSE', 'README.md')})
+        files[pathlib.Path('src/mutant_switch_kernel.f90')] = (support / 'mutant_switch.f90').read_bytes()
+        run(['gfortran', '-c', '-J', str(self.settled), str(support / 'mutant_switch.f90'), '-o', str(self.settled / 'switch.o')], check=True)
+        for place, source in enumerate(self.in_order()):   # where the numbers of a file begin does not depend on other files
+            name = source.relative_to(ROOT)
+            switched = mutant_switches.Switched(source, of_file[str(name)], 1 + place * MOST).settle(self.settled)
+            self.number_of.update({mutant: it for it, mutant in switched.numbers().items()})
+            files[name] = (self.settled / source.name).read_bytes()
+        # What is loaded first takes the place of the same in the library.
+        for name, old, new in (('CMakeLists.txt', 'include(CheckLanguage)', f'link_libraries({library} gfortran)\ninclude(CheckLanguage)'),
+                               ('CMakeLists.txt', ';-fno-semantic-interposition', ''), ('src/CMakeLists.txt', ' -fno-semantic-interposition', ''),
+                               ('src/CMakeLists.txt', '-O3', '-O1'), ('src/CMakeLists.txt', 'set(library_sources', 'set(library_sources\n    mutant_switch_kernel.f90')):
+            if old.encode() not in files[pathlib.Path(name)]:
+                sys.exit(f'{name}: no {old}')
+            files[pathlib.Path(name)] = files[pathlib.Path(name)].replace(old.encode(), new.encode())
+        files[pathlib.Path('cmake/ExportOnly.cmake')] = b'function(stickslip_export_only)\nendfunction()\nfunction(stickslip_export_header)\nendfunction()\n'
+        for name, content in files.items():
+            target = self.tree / name
+            if not target.exists() or target.read_bytes() != content:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(content)
 
     def linked(self, target, command):
         sources = set()
@@ -219,12 +265,26 @@ class Base:
     def compile(self, source, folder, *options):
         """Compiles one source into a folder, its modules too; true if it compiles."""
         includes = [part for path in (folder, *self.modules) for part in ('-I', str(path))]
-        return run(['gfortran', '-std=f2008', '-fPIC', '-fopenmp', '-w', '-J', str(folder), *includes, *options, str(source)],
+        return run(['gfortran', '-std=f2008', '-fPIC', '-fopenmp', '-w', '-ffree-line-length-none', '-J', str(folder), *includes, *options, str(source)],
                    cwd=folder).returncode == 0
+
+    def fate(self, mutant, kills, folder):
+        """What becomes of the mutant: the test that notices it, 'does not compile', 'same object' or 'survives'."""
+        number = self.number_of.get(mutant)
+        if number is None:
+            return Trial(self, mutant, folder).fate(kills)
+        notes = max(test.notes[number] for test in self.tests)
+        tests = [test for test in self.tests if test.notes[number] & 2]
+        for test in sorted(tests, key=lambda test: test.seconds / (kills[test.name] + 0.3)):
+            if not test.passes(number, limit=3 * test.seconds + 0.3):
+                return test.name
+        if notes and Trial(self, mutant, folder).same_object():
+            return 'same object'
+        return 'survives' if tests else 'survives: never another value' if notes else 'survives: never run'
 
 
 class Trial:
-    """One mutant in a folder of its own."""
+    """One mutant, compiled alone, in a folder of its own."""
 
     def __init__(self, base, mutant, folder):
         self.base, self.mutant, self.folder = base, mutant, folder
@@ -277,7 +337,7 @@ class Trial:
         if self.interface_changed():
             preload += self.dependents()
         copy = None
-        tests = [test for test in self.base.tests if test.sources & {name, copied} and self.base.runs(test, self.mutant)]
+        tests = [test for test in self.base.tests if test.sources & {name, copied}]
         tests.sort(key=lambda test: test.seconds / (kills[test.name] + 0.3))
         for count, test in enumerate(tests):
             if count == 6 and self.same_object():
@@ -285,7 +345,7 @@ class Trial:
             if copied in test.sources:
                 copy = copy or self.copy(copied)
             libraries = preload * (name in test.sources) + [copy] * (copied in test.sources)
-            if not test.passes(filter(None, libraries), 3 * test.seconds + 1):
+            if not test.passes(0, filter(None, libraries), 3 * test.seconds + 0.3):
                 return test.name
         return 'survives'
 
@@ -315,25 +375,25 @@ def main():
             *key, fate = json.loads(line)
             fates[tuple(key)] = fate
     for mutant in mutants:
-        if fates.get(mutant.key(), 'survives') == 'survives' and explained(mutant, known):
+        if fates.get(mutant.key(), 'survives').startswith('survives') and explained(mutant, known):
             fates[mutant.key()] = 'explained'
-    waiting = [mutant for mutant in mutants if fates.get(mutant.key(), 'survives') == 'survives']
+    waiting = [mutant for mutant in mutants if fates.get(mutant.key(), 'survives').startswith('survives')]
     print(f'{len(mutants)} mutants, {len(waiting)} to try', flush=True)
     if options.list:
         print(*waiting, sep='\n')
         return 0
     if waiting:
-        try_all(waiting, fates, options)
-    counts = collections.Counter(fates.get(mutant.key(), 'survives') for mutant in mutants)
-    aside = {name: counts.pop(name, 0) for name in ('does not compile', 'same object', 'explained', 'survives')}
+        try_all(every, waiting, fates, options)
+    survivors = [mutant for mutant in mutants if fates.get(mutant.key(), 'survives').startswith('survives')]
+    counts = collections.Counter(fates[mutant.key()] for mutant in mutants if mutant not in set(survivors))
+    aside = {name: counts.pop(name, 0) for name in ('does not compile', 'same object', 'explained')} | {'survive': len(survivors)}
     print(f'\n{len(mutants)} mutants: {sum(counts.values())} noticed,', ', '.join(f'{name}: {it}' for name, it in aside.items()))
-    print(*(mutant for mutant in mutants if fates.get(mutant.key()) == 'survives'), sep='\n')
-    return 1 if aside['survives'] else 0
+    print(*(f'{mutant}\n    {fates.get(mutant.key(), "not tried")}' for mutant in survivors), sep='\n')
+    return 1 if survivors else 0
 
 
-def try_all(mutants, fates, options):
-    os.nice(10)
-    base = Base(options.limit, options.jobs)
+def try_all(every, mutants, fates, options):
+    base = Base(options.limit, options.jobs, every)
     print('tests:', ', '.join(f'{test.name} {test.seconds:.2f} s' for test in base.tests), flush=True)
     kills = collections.defaultdict(collections.Counter)
     for (file, *_), fate in fates.items():
@@ -342,7 +402,7 @@ def try_all(mutants, fates, options):
     def attempt(mutant):
         folder = pathlib.Path(tempfile.mkdtemp(prefix='mutant'))
         try:
-            return Trial(base, mutant, folder).fate(kills[mutant.file])
+            return base.fate(mutant, kills[mutant.file], folder)
         finally:
             shutil.rmtree(folder)
 
@@ -352,7 +412,7 @@ def try_all(mutants, fates, options):
             kills[mutant.file][fate] += 1
             journal.write(json.dumps([*mutant.key(), fate]) + '\n')
             journal.flush()
-            print(f'[{count}] {mutant}: SURVIVES' if fate == 'survives' else f'[{count}] {mutant.file}:{mutant.number} {mutant.what}: {fate}',
+            print(f'[{count}] {mutant}: {fate}' if fate.startswith('survives') else f'[{count}] {mutant.file}:{mutant.number} {mutant.what}: {fate}',
                   flush=True)
 
 
