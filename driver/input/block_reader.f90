@@ -31,6 +31,7 @@ contains
         type(profile), allocatable :: profiles(:)
         type(constant_table) :: table
         real(dp), allocatable :: scatter(:)
+        integer, allocatable :: differing(:)   ! places of constants that are given block by block
         integer :: faults_before, law, place
 
         faults_before = size(file%faults)
@@ -39,12 +40,12 @@ contains
         table = friction_constants(law)
         call check_profiles(file, profiles, table, run%chain)
         call read_scatters(file, run%chain%n_blocks, table, scatter)
-        run%chain%differing = pack([(place, place = 1, table%n)], scatter > 0.0_dp &
+        differing = pack([(place, place = 1, table%n)], scatter > 0.0_dp &
             .or. [(profile_of(profiles, 'friction', table%of(place)%name) > 0, place = 1, table%n)])
-        call read_friction(file, run%props, law, means=size(run%chain%differing) > 0)
-        if (size(run%chain%differing) == 0 .or. size(file%faults) > faults_before) return
+        call read_friction(file, run%props, law, means=size(differing) > 0)
+        if (size(differing) == 0 .or. size(file%faults) > faults_before) return
         call fill_constants(file, profiles, table, scatter, run)
-        call check_constants(file, table, scatter, run%chain)
+        call check_constants(file, table, scatter, differing, run%chain)
         if (size(file%faults) > faults_before) return
         if (all_alike(run%chain%constants)) then
             deallocate (run%chain%constants)   ! the same bytes as without profiles
@@ -216,10 +217,11 @@ contains
     end subroutine fill_constants
 
     !> The rules of the law, block by block.
-    subroutine check_constants(file, table, scatter, blocks)
+    subroutine check_constants(file, table, scatter, differing, blocks)
         type(namelist_file), intent(inout) :: file
         type(constant_table), intent(in) :: table
         real(dp), intent(in) :: scatter(:)
+        integer, intent(in) :: differing(:)
         type(chain), intent(in) :: blocks
         character(len=text_length) :: text
         integer :: i, place, culprit, status, faults
@@ -230,7 +232,7 @@ contains
             if (status >= 0) cycle
             faults = faults + 1
             if (faults > most_shown) cycle
-            culprit = given_cause(table, place, blocks%differing)
+            culprit = given_cause(table, place, differing)
             call reject_block(file, trim(table%of(culprit)%name), scatter(culprit) > 0.0_dp, &
                 'block ' // whole_text(i) // ': ' // trim(text) // ', where ' // values_of(place))
         end do

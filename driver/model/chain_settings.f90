@@ -20,7 +20,6 @@ module chain_settings
                                            !! to their mean; 1 if not allocated [-]
         real(dp), allocatable :: constants(:, :)   !! of friction, one row a block, in the order of
                                                    !! `props`; not allocated: all have the same
-        integer, allocatable :: differing(:)       !! which of them were given block by block
     contains
         procedure :: loads_differ
     end type chain

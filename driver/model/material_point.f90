@@ -3,7 +3,7 @@
 !> on the consistent tangent, an unsymmetric system of one to three unknowns (LAPACK).
 module material_point
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_message, friction_no_convergence, friction_ok, &
+    use friction_mod, only : friction_message, friction_no_convergence, &
         friction_snap_back, friction_update, prop_alpha_n, prop_alpha_t, statev_mu, statev_size, &
         statev_u_n
     implicit none

@@ -10,9 +10,8 @@ module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_ok, friction_snap_back, friction_update, &
-        friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
-        statev_r, statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : friction_ok, friction_update, friction_update_batch, prop_alpha_n, &
+        prop_alpha_t, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, statev_u_n
     use law_facts, only : cohesion, cohesion_of_each, virgin_mu
     implicit none
     private

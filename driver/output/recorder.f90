@@ -3,7 +3,6 @@
 module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : archive
-    use chain_events, only : chain_event
     use chain_fields, only : chain_field_file
     use number_text, only : full_row
     use run_observer, only : observer, step_news

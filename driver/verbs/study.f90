@@ -1,6 +1,6 @@
 !> The verb run: simulates what an input file describes, and reports.
 module study
-    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit, output_unit
+    use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
     use block_table, only : block_columns, write_blocks
     use checkpoint, only : checkpoint_writer, read_checkpoint
     use command_line, only : command
