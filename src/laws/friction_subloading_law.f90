@@ -390,6 +390,7 @@ contains
         s = s + bend_s
         r = r + (dr + bend_r)
         e = e - (dr + bend_r)
+        call pair(r, e)
     end subroutine start_near
 
     !> A start for any slip: `-ln R ~ rate/m (1 - R)`, right at R_n, and `mu ~ mu(0)` make the

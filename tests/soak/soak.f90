@@ -243,7 +243,8 @@ contains
         ! Round-off of the displacements changes the traction by the tangent.
         force = max(norm2(t%traction), maxval(abs(t%tangent(2:m, 2:m))) * length, tiny(force))
         apart = maxval(abs(traction - t%traction(:m))) / force
-        apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)))))
+        apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)), force &
+            / (t%props(3) + viscous_of(t)))))
         condition = 1.0_dp
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
         if (creeps(nint(t%props(1)))) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
@@ -256,6 +257,8 @@ contains
             abs(t%new(5:6) - t%old(5:6)) * (length / slip))
         apart = max(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
         if (creeps(nint(t%props(1)))) condition = condition + blur_of_state(t, length) / 300.0_dp
+        ! With flash heating ln(theta) tends to (psi_ss - f0)/b.
+        if (nint(t%props(1)) == 7) condition = condition + t%props(8) / t%props(5) / 30.0_dp
         apart = max(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
         apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         damper = viscous_of(t) * (norm2(t%new(3:4) - t%old(3:4)) + epsilon(damper) * length)
