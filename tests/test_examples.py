@@ -1,6 +1,7 @@
 """The examples build against an installed package, in an empty folder, and run.
 
-BUILD names the build directory; CMAKE, the cmake program; FC, the Fortran compiler of the build.
+BUILD names the build directory; CMAKE, the cmake program; FC, the Fortran compiler of the build;
+STICKSLIP_LIBRARY, the library there, which tells the laws.
 """
 import os
 import pathlib
