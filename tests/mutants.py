@@ -337,7 +337,7 @@ class Trial:
         if self.interface_changed():
             preload += self.dependents()
         copy = None
-        tests = [test for test in self.base.tests if test.sources & {name, copied}]
+        tests = [test for test in self.base.tests if not {name, copied}.isdisjoint(test.sources)]
         tests.sort(key=lambda test: test.seconds / (kills[test.name] + 0.3))
         for count, test in enumerate(tests):
             if count == 6 and self.same_object():

@@ -234,7 +234,7 @@ class Refused(OwnConstants):
 class Resumed(LongRun):
     def test_killed_runs_resume_to_the_same_bytes(self):
         for time in {('time', 'dt'): '2e-4'}, {('time', 'rtol'): '1e-4'}:
-            self.stop_and_go(namelist({**RUN, ('time', 't_end'): '8', ('output', 'interval'): '10', ('output', 'checkpoint'): '0.02',
+            self.stop_and_go(namelist({**RUN, ('time', 't_end'): '8', ('output', 'interval'): '2', ('output', 'checkpoint'): '0.02',
                                        ('chain', 'mu_s_scatter'): '0.2', ('chain', 'scatter'): '0.2', **time}), signal.SIGKILL, 3)
 
     def test_another_profile_is_another_input(self):

@@ -1,6 +1,7 @@
 """Runs that stop before their end, and go on: checkpoints, --resume, interrupts; and --verify."""
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -49,6 +50,7 @@ class LongRun(Program):
 
     def stop_and_go(self, text, stop, times):
         """Stopped at random moments and resumed each time, a run leaves what an undisturbed one does."""
+        shutil.rmtree(self.folder / 'parts', ignore_errors=True)
         summary = self.whole_run(text)
         whole = self.results('whole')[0]
         chance = random.Random(20)
