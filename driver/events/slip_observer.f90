@@ -26,8 +26,6 @@ module slip_observer
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
-        type(moment), private :: latest                !! at the end of the step before
-        integer, private :: piece = 0                  !! in which that was
     contains
         procedure :: prepare, see, visit
         procedure, private :: measure
@@ -69,17 +67,11 @@ contains
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(step_news), intent(inout) :: news
-        type(moment) :: now
         integer :: i, k
 
         i = self%drive%piece(old%time)
-        ! within a piece, a step starts as the one before has ended
-        if (i /= self%piece .or. abs(old%time - self%latest%time) > 0.0_dp) self%latest = &
-            seen(self, old, i)
-        now = seen(self, new, i)
-        call self%finder%follow(self%latest, now, news%last, news%slip_events)
-        self%latest = now
-        self%piece = i
+        call self%finder%follow(seen(self, old, i), seen(self, new, i), news%last, &
+            news%slip_events)
         do k = 1, size(news%slip_events)
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))

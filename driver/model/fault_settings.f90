@@ -17,10 +17,10 @@ module fault_settings
         real(dp) :: poisson = 0.25_dp               !! Poisson's ratio; not used in antiplane strain
         real(dp) :: wave_speed = 0.0_dp             !! of shear waves [L/T]
         real(dp) :: plate_rate = 0.0_dp             !! slip rate that is imposed from afar [L/T]
-        type(map_on_grid) :: constants                !! of friction, in the order of `props`; the
+        type(map_on_grid) :: constants              !! of friction, in the order of `props`; the
                                                     !! last quantity is the normal traction
         logical :: steady = .true.                  !! starts from sliding at the plate rate
-        type(map_on_grid) :: initial                  !! if not: traction [F/L^2], internal variable
+        type(map_on_grid) :: initial                !! if not: traction [F/L^2], internal variable
         real(dp) :: t_end = 0.0_dp                  !! [T]
         real(dp) :: rtol = 1.0e-4_dp                !! error of a step, see docs/fault.md
         logical :: rate_state = .true.              !! the law: rate-and-state friction
