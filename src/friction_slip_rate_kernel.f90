@@ -6,7 +6,8 @@
 !>
 !> convex, and steeper than a line of slope 1: it has one root. The search starts from an
 !> approximation of the root for k sinh(y) ~ (k/2) e^y, which is t minus the Wright omega function
-!> of t + ln(k/2), and goes on by Householder's method of fourth order: twice as a rule.
+!> of t + ln(k/2), or from 0 where that is small, and goes on by Householder's method of fourth
+!> order: twice as a rule.
 !>
 !> Points that the kernel does not take are told by `left`: numbers out of range or of an unusual
 !> size, and what has not settled. Each point is treated by itself: its result does not depend on
@@ -32,6 +33,7 @@ module friction_slip_rate_kernel
     real(wp), parameter :: smallest = 1.0e-30_wp  !! of those that must be positive
     real(wp), parameter :: far = 20.0_wp   !! beyond this y, 1 - e^-2y is 1 to the last bit
     real(wp), parameter :: fast = 20.0_wp  !! beyond this z, w is larger than ln(w) by far
+    real(wp), parameter :: least_start = 0.25_wp  !! a smaller y starts from 0
 
     !> A block of points, prepared for the search.
     type :: search_block
@@ -104,18 +106,19 @@ contains
         real(wp), intent(in) :: kept(lanes, inputs)
         type(search_block), intent(out) :: block
         integer(c_int), intent(inout) :: left(lanes)
-        real(wp), parameter :: nothing = 1.0e-300_wp, ln_nothing = log(nothing)
+        real(wp), parameter :: nothing = 1.0e-300_wp
         real(wp), parameter :: most_t = 1.0e5_wp, most_x = 1.0e5_wp, least_x = -500.0_wp, &
-            most_growth = 600.0_wp   !! e^that is in range
-        real(wp), dimension(lanes) :: state, ln_state, ln_k_half, z
-        real(wp) :: strength, shared, beyond
+            most_growth = 600.0_wp, &   ! e^that is in range
+            most_k = 200.0_wp           ! and the cube of e^that
+        real(wp), dimension(lanes) :: state, ln_state, per_a
+        real(wp) :: shared, ln_k_half, z, y, beyond
         integer :: i
 
         do i = 1, lanes
-            strength = kept(i, in_a) * kept(i, in_pressure)
-            shared = 1.0_wp / (strength * kept(i, in_d_c))
-            block%per_d_c(i) = strength * shared
-            block%t(i) = kept(i, in_tau) / strength
+            shared = 1.0_wp / (kept(i, in_a) * kept(i, in_pressure) * kept(i, in_d_c))
+            per_a(i) = kept(i, in_pressure) * kept(i, in_d_c) * shared   ! one division for three
+            block%per_d_c(i) = kept(i, in_a) * kept(i, in_pressure) * shared
+            block%t(i) = kept(i, in_tau) * (kept(i, in_d_c) * shared)
             block%k_half(i) = damping * kept(i, in_v0) * (kept(i, in_d_c) * shared)
             state(i) = kept(i, in_v0) * kept(i, in_theta) * block%per_d_c(i)
         end do
@@ -123,77 +126,55 @@ contains
             ln_state(i) = log(state(i))
         end do
         do i = 1, lanes
-            ln_k_half(i) = log(max(block%k_half(i), nothing))
-        end do
-        do i = 1, lanes
-            block%x(i) = state_exponent(kept(i, in_a), kept(i, in_b), kept(i, in_f0), ln_state(i))
-            z(i) = block%t(i) - block%x(i) + ln_k_half(i)
+            block%x(i) = state_exponent(1.0_wp, kept(i, in_b) * per_a(i), kept(i, in_f0) &
+                * per_a(i), ln_state(i))
+            ln_k_half = rough_log(max(block%k_half(i), nothing))
+            z = block%t(i) - block%x(i) + ln_k_half
             beyond = max(block%t(i) - most_t, block%x(i) - most_x, least_x - block%x(i), &
-                min(block%t(i) - block%x(i), -ln_k_half(i)) - most_growth)
+                min(block%t(i) - block%x(i), -ln_k_half) - most_growth, ln_k_half - block%x(i) &
+                - most_k)
+            y = block%t(i) - wright_omega(z)
+            if (y < least_start) y = 0.0_wp
             if (beyond > 0.0_wp) left(i) = 1
             if (left(i) > 0) then
-                block%t(i) = 1.0_wp
+                block%t(i) = 0.0_wp
                 block%x(i) = 0.0_wp
                 block%k_half(i) = 0.0_wp
-                z(i) = ln_nothing
+                y = 0.0_wp
             end if
-            block%y(i) = block%t(i) - wright_omega(z(i))
+            block%y(i) = y
         end do
-        call start_fast(z, block)
-        call start_small(z, block)
     end subroutine prepare
 
-    !> w with w + ln(w) = z, to 0.07 up to z = 20: a polynomial by least squares.
-    pure function wright_omega(z) result(w)
+    !> w with w + ln(w) = z, to 0.1: up to z = 20 a polynomial by least squares.
+    elemental function wright_omega(z) result(w)
         real(wp), intent(in) :: z
         real(wp) :: w
         real(wp), parameter :: low = -3.0_wp
-        real(wp) :: inner
+        real(wp) :: inner, outer
 
         inner = min(max(z, low), fast)
+        outer = max(z, fast)
         w = 0.5968_wp + inner * (0.3838_wp + inner * (0.05949_wp + inner * (-3.019e-3_wp &
             + inner * 5.789e-5_wp)))
         if (z < low) w = 0.0_wp
+        if (z > fast) w = outer - rough_log(outer - rough_log(outer))
     end function wright_omega
 
-    !> Where damping carries most of the traction: w ~ z - ln(z).
-    subroutine start_fast(z, block)
-        real(wp), intent(in) :: z(lanes)   !! t + ln(k/2)
-        type(search_block), intent(inout) :: block
-        real(wp) :: ln_z(lanes), most
-        integer :: i
+    !> ln(x) to 0.01: the exponent, and a parabola for what is left.
+    elemental function rough_log(x) result(ln_x)
+        real(wp), intent(in) :: x   !! > 0, not denormalised
+        real(wp) :: ln_x
+        integer(c_int64_t), parameter :: fraction = 2_c_int64_t**52 - 1
+        real(wp), parameter :: whole = 2.0_wp**52   ! a number whose fraction is an integer
+        real(wp) :: exponent, m   !! x = m*2^(exponent - 1023), 1 <= m < 2
 
-        most = z(1)
-        do i = 2, lanes
-            most = max(most, z(i))
-        end do
-        if (most <= fast) return
-        do i = 1, lanes
-            ln_z(i) = log(max(z(i), 1.0_wp))
-        end do
-        do i = 1, lanes
-            if (z(i) > fast) block%y(i) = block%t(i) - (z(i) - ln_z(i))
-        end do
-    end subroutine start_fast
-
-    !> Where y is below 1, sinh(y) ~ y + y^3/6 is the better approximation.
-    subroutine start_small(z, block)
-        real(wp), intent(in) :: z(lanes)   !! t + ln(k/2)
-        type(search_block), intent(inout) :: block
-        real(wp), parameter :: clear = 1.5_wp   !! a start beyond has a root beyond 1
-        real(wp) :: k(lanes), y
-        integer :: i
-
-        if (least(block%y) >= clear) return
-        do i = 1, lanes
-            k(i) = 2.0_wp * exp(z(i) - block%t(i))
-        end do
-        do i = 1, lanes
-            y = block%t(i) / (1.0_wp + k(i))
-            y = block%t(i) / (1.0_wp + k(i) * (1.0_wp + y**2 * (1.0_wp / 6.0_wp)))
-            if (max(block%y(i) - clear, block%t(i) - (1.0_wp + k(i))) < 0.0_wp) block%y(i) = y
-        end do
-    end subroutine start_small
+        exponent = transfer(ior(shiftr(transfer(x, fraction), 52), transfer(whole, fraction)), x) &
+            - whole
+        m = transfer(ior(iand(transfer(x, fraction), fraction), transfer(1.0_wp, fraction)), x)
+        ln_x = log(2.0_wp) * (exponent - 1023.0_wp) + (-1.1650_wp + m * (1.4056_wp - m &
+            * 0.2357_wp))
+    end function rough_log
 
     pure function least(y)
         real(wp), intent(in) :: y(lanes)
@@ -206,47 +187,73 @@ contains
         end do
     end function least
 
-    !> Householder's method; a point that has converged stays where it is while others go on. Its
-    !> slip rate is that before the last step, with the step d by the addition theorem
-    !> sinh(y + d) = sinh(y) cosh(d) + cosh(y) sinh(d): d is small.
+    !> Householder's method of fourth order. sinh and cosh after a step d follow from those before
+    !> it by the addition theorem, sinh(y + d) = sinh(y) cosh(d) + cosh(y) sinh(d), so that only the
+    !> start takes exponentials. A point that has converged stays where it is while others go on.
     subroutine solve(kept, block, rates, left)
         real(wp), intent(in) :: kept(lanes, inputs)
         type(search_block), intent(inout) :: block
         real(wp), intent(inout) :: rates(lanes, 2)   !! out: v, the first
         integer(c_int), intent(inout) :: left(lanes)
         real(wp), parameter :: small = 1.0e-4_wp   !! the next error is below its fourth power
+        real(wp), parameter :: reach = 0.7_wp      !! of the series
         real(wp), parameter :: sixth = 1.0_wp / 6.0_wp
         integer, parameter :: max_iterations = 12
-        real(wp), dimension(lanes) :: growth, part, active
-        real(wp) :: still, s, c, f, f1, d, v
+        real(wp), dimension(lanes) :: growth, sinh_y, cosh_y, active   ! both times 2 e^-y
+        real(wp) :: still, k, s, c, f, f1, d, cosh_d, sinh_d, before
         integer :: i, iteration
 
+        call grow(block, growth, sinh_y)
+        cosh_y = 2.0_wp - sinh_y
         active = 1.0_wp
-        rates(:, 1) = 0.0_wp
         do iteration = 1, max_iterations
-            call grow(block, growth, part)
             still = 0.0_wp
             do i = 1, lanes
-                s = block%k_half(i) * growth(i) * part(i)   ! k sinh(y), k cosh(y)
-                c = block%k_half(i) * growth(i) * (2.0_wp - part(i))
+                k = block%k_half(i) * growth(i)
+                s = k * sinh_y(i)
+                c = k * cosh_y(i)
                 f = (block%y(i) - block%t(i)) + s
                 f1 = 1.0_wp + c
                 d = -f * (f1**2 - 0.5_wp * f * s) / (f1 * (f1**2 - f * s) + f**2 * c * sixth)
-                d = min(max(d, -0.9_wp * block%y(i)), block%t(i) - block%y(i))
-                v = slip_rate(kept(i, in_v0), growth(i), part(i) * (1.0_wp + 0.5_wp * d**2) &
-                    + (2.0_wp - part(i)) * d * (1.0_wp + d**2 * sixth))
-                if (active(i) <= 0.0_wp) v = rates(i, 1)
-                rates(i, 1) = v
-                block%y(i) = block%y(i) + d * active(i)
-                if (abs(d) <= small * min(block%y(i), 1.0_wp)) active(i) = 0.0_wp
+                d = min(max(d, -reach, -block%y(i)), reach, block%t(i) - block%y(i)) * active(i)
+                cosh_d = cosh_of(d**2)
+                sinh_d = d * sinhc_of(d**2)
+                before = sinh_y(i)
+                sinh_y(i) = before * cosh_d + cosh_y(i) * sinh_d
+                cosh_y(i) = cosh_y(i) * cosh_d + before * sinh_d
+                block%y(i) = block%y(i) + d
+                if (abs(d) <= small) active(i) = 0.0_wp
                 still = max(still, active(i))
             end do
-            if (still <= 0.0_wp) return
+            if (still <= 0.0_wp) exit
         end do
         do i = 1, lanes
+            rates(i, 1) = slip_rate(kept(i, in_v0), growth(i), sinh_y(i))
             if (active(i) > 0.0_wp) left(i) = 1
         end do
     end subroutine solve
+
+    !> cosh(d), and sinh(d)/d, for d up to 0.7.
+    elemental function cosh_of(square) result(cosh_d)
+        real(wp), intent(in) :: square   !! d^2
+        real(wp) :: cosh_d
+        real(wp), parameter :: c2 = 1.0_wp / 2.0_wp, c4 = c2 / 12.0_wp, c6 = c4 / 30.0_wp, &
+            c8 = c6 / 56.0_wp, c10 = c8 / 90.0_wp, c12 = c10 / 132.0_wp, c14 = c12 / 182.0_wp, &
+            c16 = c14 / 240.0_wp
+
+        cosh_d = 1.0_wp + square * (c2 + square * (c4 + square * (c6 + square * (c8 + square &
+            * (c10 + square * (c12 + square * (c14 + square * c16)))))))
+    end function cosh_of
+
+    elemental function sinhc_of(square) result(sinhc)
+        real(wp), intent(in) :: square   !! d^2
+        real(wp) :: sinhc
+        real(wp), parameter :: c2 = 1.0_wp / 6.0_wp, c4 = c2 / 20.0_wp, c6 = c4 / 42.0_wp, &
+            c8 = c6 / 72.0_wp, c10 = c8 / 110.0_wp, c12 = c10 / 156.0_wp, c14 = c12 / 210.0_wp
+
+        sinhc = 1.0_wp + square * (c2 + square * (c4 + square * (c6 + square * (c8 + square &
+            * (c10 + square * (c12 + square * c14))))))
+    end function sinhc_of
 
     !> e^(y - x), and 1 - e^-2y.
     subroutine grow(block, growth, part)
