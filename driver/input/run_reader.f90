@@ -335,7 +335,7 @@ contains
         if (.not. allocated(run%props) .or. .not. run%adaptive) return
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
-        if (run%newmark .or. run%chain%n_blocks > 1) then
+        if (run%newmark .or. .not. run%one_by_itself()) then
             call file%reject(group, key, 'needs fixed steps (&time dt) of a chain, of a block ' &
                 // 'that moves across the interface, and with beta, gamma or rho_infinity')
         else if (law%damping <= law%rate_weakening * run%drive%largest_normal()) then
@@ -358,7 +358,7 @@ contains
         call file%get_choice(group, key, contact, ['elastic', 'rigid  '], default='elastic')
         run%rigid_contact = contact == 'rigid'
         if (.not. run%rigid_contact) return
-        if (.not. run%adaptive .or. run%newmark .or. run%chain%n_blocks > 1) call file%reject( &
+        if (.not. run%adaptive .or. run%newmark .or. .not. run%one_by_itself()) call file%reject( &
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
             // 'rho_infinity, that does not move across the interface (normal_mass)')
         if (.not. allocated(run%props)) return

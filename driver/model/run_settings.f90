@@ -4,7 +4,7 @@ module run_settings
     use chain_settings, only : chain
     use law_facts, only : typical_strength
     use loading_programme, only : programme
-    use slider_system, only : initial_values, normal_motion
+    use slider_system, only : ends_fixed, initial_values, normal_motion
     use unit_names, only : units
     implicit none
     private
@@ -43,7 +43,7 @@ module run_settings
         type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results
     contains
-        procedure :: event_force, loading_sense
+        procedure :: event_force, loading_sense, one_by_itself
     end type settings
 
 contains
@@ -56,6 +56,15 @@ contains
         force = self%event_drop * self%area * typical_strength(self%props, &
             self%drive%largest_normal())
     end function event_force
+
+    !> Is there one block alone, which nothing but its drive spring holds?
+    pure function one_by_itself(self) result(yes)
+        class(settings), intent(in) :: self
+        logical :: yes
+
+        yes = self%chain%n_blocks == 1 .and. .not. (self%chain%ends == ends_fixed &
+            .and. self%chain%coupling > 0.0_dp)
+    end function one_by_itself
 
     !> 1 or -1: the sense in which the drive moves first; of one that never does, that in which its
     !> spring pulls at the start, or else the block moves.

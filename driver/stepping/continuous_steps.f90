@@ -23,7 +23,7 @@ module continuous_steps
     implicit none
     private
 
-    public :: continuous
+    public :: continuous, fill_block, set_up, unknowns_of
 
     !> Part of the time that no step is shorter than.
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
@@ -67,11 +67,7 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start
-        !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
-        !> what the law remembers, how many steps are taken by the contact spring.
-        real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
-        real(dp) :: force, stiffness
-        integer :: status
+        real(dp) :: largest   !! normal traction [F/L^2]
 
         call self%take_run(run, system, start)
         self%dt = run%dt
@@ -81,38 +77,16 @@ contains
             / (16.0_dp * run%drive%frequency))
         self%every = run%every
         self%rtol = run%rtol
+        largest = run%drive%largest_normal()
         associate (eq => self%equations)
-            call read_surface(run%props, eq%surface, status)
-            eq%mass = run%mass
-            eq%stiffness = run%stiffness
-            eq%damping = run%damping
-            eq%area = run%area
-            eq%alpha = run%props(prop_alpha_t)
-            eq%damper = contact_damping(run%props)
-            eq%rigid = run%rigid_contact
+            call set_up(run, run%props, largest, eq, self%natural)
             eq%drive = run%drive
-            eq%least_pressure = 1.0e-10_dp * run%drive%largest_normal()
-            eq%forward = run%loading_sense()
             self%implicit = eq%surface%traits%stiff
-            self%open_below = run%drive%largest_normal() * vanishing(self)
+            self%open_below = largest * vanishing(self)
             if (cohesion(run%props) > 0.0_dp) then   ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, self%open_below)
-                self%open_below = -tiny(force)
+                self%open_below = -tiny(largest)
             end if
-            force = run%area * typical_strength(run%props, run%drive%largest_normal())
-            stiffness = run%stiffness
-            if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
-            self%natural(extension) = force / stiffness
-            self%natural(velocity) = 1.0_dp
-            if (run%mass > 0.0_dp) self%natural(velocity) = force / sqrt(stiffness * run%mass)
-            self%natural(elastic) = force / (run%area * eq%alpha)
-            self%natural(memory) = 1.0_dp
-            if (eq%surface%traits%weight * run%drive%largest_normal() > 0.0_dp) then
-                self%natural(memory) = force / (run%area * run%drive%largest_normal() &
-                    * eq%surface%traits%weight)
-            end if
-            self%natural(ratio) = 1.0_dp
-            if (eq%surface%traits%stiff) self%natural = self%natural * stiff_sizes
             self%weights = 1.0_dp / (self%rtol * self%natural)
             call synchronise(self, start)
             eq%phase = merge(phase_slide, phase_stick, eq%surface%traits%onset == onset_gradual &
@@ -122,6 +96,44 @@ contains
             if (eq%rigid) call take_off_spring(self, start)
         end associate
     end subroutine prepare
+
+    !> Equations of a block with constants of its own, but for its drive and the phase of its
+    !> contact, and the sizes of its unknowns.
+    subroutine set_up(run, props, largest, equations, natural)
+        type(settings), intent(in) :: run
+        real(dp), intent(in) :: props(:)
+        real(dp), intent(in) :: largest   !! normal traction [F/L^2]
+        type(slider_equations), intent(inout) :: equations
+        real(dp), intent(out) :: natural(controlled)
+        !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
+        !> what the law remembers, how many steps are taken by the contact spring.
+        real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        real(dp) :: force, stiffness
+        integer :: status
+
+        associate (eq => equations)
+            call read_surface(props, eq%surface, status)
+            eq%mass = run%mass
+            eq%stiffness = run%stiffness
+            eq%damping = run%damping
+            eq%area = run%area
+            eq%alpha = props(prop_alpha_t)
+            eq%damper = contact_damping(props)
+            eq%rigid = run%rigid_contact
+            eq%least_pressure = 1.0e-10_dp * largest
+            eq%forward = run%loading_sense()
+            force = run%area * typical_strength(props, largest)
+            stiffness = run%stiffness
+            if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
+            natural = 1.0_dp
+            natural(extension) = force / stiffness
+            if (run%mass > 0.0_dp) natural(velocity) = force / sqrt(stiffness * run%mass)
+            natural(elastic) = force / (run%area * eq%alpha)
+            if (eq%surface%traits%weight * largest > 0.0_dp) natural(memory) = force &
+                / (run%area * largest * eq%surface%traits%weight)
+            if (eq%surface%traits%stiff) natural = natural * stiff_sizes
+        end associate
+    end subroutine set_up
 
     !> Part of the largest normal traction below which a contact under a varying one counts as open:
     !> what is left out is an impulse, and of the order of the square. As the normal traction
@@ -198,29 +210,40 @@ contains
         end associate
     end subroutine hold_velocity
 
-    !> Takes the unknowns from a state.
     pure subroutine synchronise(self, state)
         class(continuous), intent(inout) :: self
         type(slider_state), intent(in) :: state
 
-        self%y(extension) = state%spring(1) / self%system%stiffness
-        self%y(velocity) = state%v(1)
-        self%y(elastic) = state%statev(1, statev_u_et)
-        select case (self%equations%surface%traits%memory)
-        case (1)
-            self%y(memory) = state%statev(1, statev_mu)
-            if (self%equations%damper > 0.0_dp) self%y(ratio) = state%statev(1, statev_r)
-        case (2)
-            self%y(memory) = state%statev(1, statev_r)
-            if (self%equations%surface%traits%logarithmic) self%y(memory) = log(self%y(memory))
-        case default   ! it remembers nothing
-        end select
-        self%y(slip) = state%statev(1, statev_slip)
+        self%y = unknowns_of(self%equations, self%system, state, 1)
         self%y(drive_work) = state%drive_work
         self%y(damped) = state%damped
-        self%y(dissipated) = state%statev(1, statev_dissipation)
         self%known = .false.
     end subroutine synchronise
+
+    !> The unknowns of a block as a state has them, but for what is known of all blocks together.
+    pure function unknowns_of(equations, system, state, i) result(y)
+        type(slider_equations), intent(in) :: equations
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: state
+        integer, intent(in) :: i   !! block
+        real(dp) :: y(unknowns)
+
+        y = 0.0_dp
+        y(extension) = state%spring(i) / system%stiffness
+        y(velocity) = state%v(i)
+        y(elastic) = state%statev(i, statev_u_et)
+        select case (equations%surface%traits%memory)
+        case (1)
+            y(memory) = state%statev(i, statev_mu)
+            if (equations%damper > 0.0_dp) y(ratio) = state%statev(i, statev_r)
+        case (2)
+            y(memory) = state%statev(i, statev_r)
+            if (equations%surface%traits%logarithmic) y(memory) = log(y(memory))
+        case default   ! it remembers nothing
+        end select
+        y(slip) = state%statev(i, statev_slip)
+        y(dissipated) = state%statev(i, statev_dissipation)
+    end function unknowns_of
 
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self
@@ -785,52 +808,67 @@ contains
         integer, intent(in) :: piece
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
-        type(law_state) :: state
-        real(dp) :: pressure, strength, dy(unknowns)
+        real(dp) :: dy(unknowns)
         logical :: failed
 
-        ! what accumulates never falls, not even by round-off
-        self%y(slip) = max(self%y(slip), old%statev(1, statev_slip))
-        self%y(dissipated) = max(self%y(dissipated), old%statev(1, statev_dissipation))
         associate (eq => self%equations, y => self%y)
             new%time = t
             new%drive = self%origin + self%drive%position(t)
             new%normal = self%drive%normal_traction(t, piece)
             new%drive_work = y(drive_work)
             new%damped = y(damped)
-            new%x(1) = new%drive - y(extension)
-            new%spring(1) = self%system%stiffness * y(extension)
-            new%friction(1) = self%system%area * eq%traction(t, y)
             if (self%known) then
                 dy = self%first
             else
                 call eq%rates(t, y, dy, failed)
             end if
-            new%v(1) = y(velocity)
+            call fill_block(eq, self%system, t, y, dy, 1, old, new)
             if (.not. eq%mass > 0.0_dp) new%v(1) = self%drive%drive_velocity(t, piece) &
                 - dy(extension)
-            new%a(1) = dy(velocity)
-
-            pressure = 0.0_dp
-            if (eq%phase /= phase_open) pressure = max(new%normal, eq%least_pressure)
-            state = eq%law_state_of(y, pressure)
-            new%statev(1, statev_status) = 3.0_dp
-            if (eq%phase /= phase_open) new%statev(1, statev_status) = merge(2.0_dp, 1.0_dp, &
-                dy(slip) > 0.0_dp)
             new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
-            new%statev(1, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
-            new%statev(1, statev_r) = state%r
-            if (eq%surface%traits%memory == 1) then
-                new%statev(1, statev_mu) = state%mu
-            else if (pressure > 0.0_dp) then
-                strength = abs(eq%traction(t, y))
-                if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
-                new%statev(1, statev_mu) = max(0.0_dp, strength - eq%surface%cohesion) / pressure
-            end if
-            new%statev(1, statev_slip) = y(slip)
-            new%statev(1, statev_dissipation) = y(dissipated)
         end associate
     end subroutine fill
+
+    !> What a state holds of a block, but for its u_n.
+    subroutine fill_block(eq, system, t, y, dy, i, old, new)
+        type(slider_equations), intent(in) :: eq
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: t                 !! [T]
+        real(dp), intent(inout) :: y(unknowns)
+        real(dp), intent(in) :: dy(unknowns)
+        integer, intent(in) :: i                  !! block
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new  !! its time, drive and normal traction are given
+        type(law_state) :: state
+        real(dp) :: pressure, strength
+
+        ! what accumulates never falls, not even by round-off
+        y(slip) = max(y(slip), old%statev(i, statev_slip))
+        y(dissipated) = max(y(dissipated), old%statev(i, statev_dissipation))
+        new%x(i) = new%drive - y(extension)
+        new%spring(i) = system%stiffness * y(extension)
+        new%friction(i) = system%area * eq%traction(t, y)
+        new%v(i) = y(velocity)
+        new%a(i) = dy(velocity)
+        pressure = new%normal
+        if (allocated(system%load)) pressure = pressure * system%load(i)
+        pressure = merge(0.0_dp, max(pressure, eq%least_pressure), eq%phase == phase_open)
+        state = eq%law_state_of(y, pressure)
+        new%statev(i, statev_status) = 3.0_dp
+        if (eq%phase /= phase_open) new%statev(i, statev_status) = merge(2.0_dp, 1.0_dp, &
+            dy(slip) > 0.0_dp)
+        new%statev(i, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
+        new%statev(i, statev_r) = state%r
+        if (eq%surface%traits%memory == 1) then
+            new%statev(i, statev_mu) = state%mu
+        else if (pressure > 0.0_dp) then
+            strength = abs(eq%traction(t, y))
+            if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
+            new%statev(i, statev_mu) = max(0.0_dp, strength - eq%surface%cohesion) / pressure
+        end if
+        new%statev(i, statev_slip) = y(slip)
+        new%statev(i, statev_dissipation) = y(dissipated)
+    end subroutine fill_block
 
     subroutine visit(self, file)
         class(continuous), intent(inout) :: self

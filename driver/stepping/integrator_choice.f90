@@ -2,6 +2,7 @@
 module integrator_choice
     use abstract_integrator, only : integrator
     use adaptive_steps, only : adaptive
+    use continuous_chain, only : chain_in_continuous_time, continuous_blocks
     use continuous_steps, only : continuous
     use fixed_steps, only : fixed
     use run_settings, only : settings
@@ -19,8 +20,10 @@ contains
         type(slider_state), intent(in) :: start   !! the state at time 0
         class(integrator), allocatable, intent(out) :: chosen
 
-        if (run%adaptive .and. .not. run%newmark .and. run%chain%n_blocks == 1) then
+        if (run%adaptive .and. .not. run%newmark .and. run%one_by_itself()) then
             allocate (continuous :: chosen)
+        else if (run%adaptive .and. chain_in_continuous_time(run)) then
+            allocate (continuous_blocks :: chosen)
         else if (run%adaptive) then
             allocate (adaptive :: chosen)
         else

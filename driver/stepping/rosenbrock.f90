@@ -1,12 +1,15 @@
 !> One step of Rodas4, the stiffly accurate Rosenbrock method of order 4(3) of Hairer and Wanner
-!> (Solving Ordinary Differential Equations II, section IV.7), for the rate equations of a block.
+!> (Solving Ordinary Differential Equations II, section IV.7), for the rate equations of a block,
+!> and of a chain.
 module rosenbrock
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use chain_rates, only : chain_equations
+    use chain_solver, only : chain_matrix
     use slider_rates, only : controlled, elastic, extension, slider_equations, unknowns, velocity
     implicit none
     private
 
-    public :: rosenbrock_step
+    public :: chain_stepper, rosenbrock_step
 
     integer, parameter :: stages = 6
     real(dp), parameter :: gamma = 0.25_dp
@@ -32,6 +35,19 @@ module rosenbrock
         -31.52159432874371_dp, &
         0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 11.70890893206160_dp, 16.31930543123136_dp, &
         0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, -6.058818238834054_dp], [stages, stages - 1])
+
+    !> Steps of a chain, and room for one.
+    type :: chain_stepper
+        !> Of each block: natural sizes of the unknowns, the inverse of the tolerated errors.
+        real(dp), allocatable, dimension(:, :) :: natural, weights
+        real(dp), allocatable, private :: j(:, :, :), by_time(:, :), k(:, :, :), &
+            matrix(:, :, :), answer(:, :), share(:)
+        integer, allocatable, private :: pivot(:, :)
+        type(chain_matrix), private :: neighbours
+    contains
+        procedure :: make_room, step
+        procedure, private :: factorise_all, solve_all
+    end type chain_stepper
 
     interface
         !> LAPACK: factors of a matrix by Gaussian elimination with partial pivoting.
@@ -72,22 +88,14 @@ contains
         real(dp) :: j(unknowns, controlled), by_time(unknowns), k(unknowns, stages), &
             matrix(controlled, controlled), w(unknowns)
         logical :: failed
-        integer :: i, info, pivot(controlled)
+        integer :: i, pivot(controlled)
 
         error = huge(error)
         growth = 0.0_dp
         call differentiate(equations, t, h, y, first, scales(2, :), j, by_time, failed)
         if (failed) return
-        do i = 1, controlled
-            ! by natural sizes, so that no choice of units has a say in which pivot is taken
-            matrix(i, :) = -j(i, :) * scales(2, :) / scales(2, i)
-            growth = max(growth, sum(abs(matrix(i, :))))
-        end do
-        do i = 1, controlled
-            matrix(i, i) = matrix(i, i) + 1.0_dp / (gamma * h)
-        end do
-        call dgetrf(controlled, controlled, matrix, controlled, pivot, info)
-        if (info /= 0) return
+        call factorise(j, h, scales(2, :), matrix, pivot, growth, failed)
+        if (failed) return
         new = y
         do i = 1, stages
             w = y + matmul(k(:, :i - 1), a(i, :i - 1))
@@ -98,18 +106,174 @@ contains
                 if (failed) return
             end if
             k(:, i) = k(:, i) + matmul(k(:, :i - 1), c(i, :i - 1)) / h + (h * d(i)) * by_time
-            k(:controlled, i) = k(:controlled, i) / scales(2, :)
-            call dgetrs('N', controlled, 1, matrix, controlled, pivot, k(:, i:i), unknowns, &
-                info)
-            k(:controlled, i) = k(:controlled, i) * scales(2, :)
-            ! the others do not act on these
-            k(controlled + 1:, i) = gamma * h * (k(controlled + 1:, i) &
-                + matmul(j(controlled + 1:, :), k(:controlled, i)))
+            call solve(matrix, pivot, scales(2, :), k(:controlled, i))
+            call follow(j, h, k(:, i))
         end do
         new = w + k(:, stages)
         error = maxval(abs(k(:controlled, stages)) * scales(1, :))
         if (.not. all(abs(new) <= huge(error))) error = huge(error)
     end subroutine rosenbrock_step
+
+    !> Factors of a step's matrix, by natural sizes, so that no choice of units has a say in which
+    !> pivot is taken.
+    pure subroutine factorise(j, h, natural, matrix, pivot, growth, failed)
+        real(dp), intent(in) :: j(unknowns, controlled), h, natural(controlled)
+        real(dp), intent(out) :: matrix(controlled, controlled)
+        integer, intent(out) :: pivot(controlled)
+        real(dp), intent(out) :: growth   !! size of the equations' derivative [1/T]
+        logical, intent(out) :: failed
+        integer :: i, info
+
+        growth = 0.0_dp
+        do i = 1, controlled
+            matrix(i, :) = -j(i, :) * natural / natural(i)
+            growth = max(growth, sum(abs(matrix(i, :))))
+        end do
+        do i = 1, controlled
+            matrix(i, i) = matrix(i, i) + 1.0_dp / (gamma * h)
+        end do
+        call dgetrf(controlled, controlled, matrix, controlled, pivot, info)
+        failed = info /= 0
+    end subroutine factorise
+
+    pure subroutine solve(matrix, pivot, natural, k)
+        real(dp), intent(in) :: matrix(controlled, controlled), natural(controlled)
+        integer, intent(in) :: pivot(controlled)
+        real(dp), intent(inout) :: k(controlled)
+        integer :: info
+
+        k = k / natural
+        call dgetrs('N', controlled, 1, matrix, controlled, pivot, k, controlled, info)
+        k = k * natural
+    end subroutine solve
+
+    !> The unknowns that do not act on the others.
+    pure subroutine follow(j, h, k)
+        real(dp), intent(in) :: j(unknowns, controlled), h
+        real(dp), intent(inout) :: k(unknowns)
+
+        k(controlled + 1:) = gamma * h * (k(controlled + 1:) + matmul(j(controlled + 1:, :), &
+            k(:controlled)))
+    end subroutine follow
+
+    !> For a number of blocks.
+    subroutine make_room(self, blocks, ring)
+        class(chain_stepper), intent(inout) :: self
+        integer, intent(in) :: blocks
+        logical, intent(in) :: ring
+
+        allocate (self%natural(controlled, blocks), self%weights(controlled, blocks))
+        allocate (self%j(unknowns, controlled, blocks), self%by_time(unknowns, blocks), &
+            self%k(unknowns, blocks, stages), self%matrix(controlled, controlled, blocks), &
+            self%answer(controlled, blocks), self%share(blocks), &
+            self%pivot(controlled, blocks))
+        call self%neighbours%make_room(blocks, ring)
+    end subroutine make_room
+
+    !> From `y` at time `t` by `h`.
+    subroutine step(self, chain, t, h, y, first, new, error)
+        class(chain_stepper), intent(inout) :: self
+        type(chain_equations), intent(in) :: chain
+        real(dp), intent(in) :: t, h                    !! [T]
+        real(dp), intent(in) :: y(:, :), first(:, :)    !! unknowns and their rates, a column a
+                                                        !! block
+        real(dp), intent(inout) :: new(:, :)
+        real(dp), intent(out) :: error    !! part of the tolerated one; huge if a rate is missing
+        logical :: failed
+        integer :: i, l
+
+        error = huge(error)
+        call self%factorise_all(chain, t, h, y, failed)
+        if (failed) return
+        do i = 1, stages
+            new(:, :) = y
+            do l = 1, i - 1
+                new(:, :) = new + a(i, l) * self%k(:, :, l)
+            end do
+            if (i == 1) then
+                self%k(:, :, 1) = first
+            else
+                call chain%rates(t + at(i) * h, new, self%k(:, :, i), failed)
+                if (failed) return
+            end if
+            self%k(:, :, i) = self%k(:, :, i) + (h * d(i)) * self%by_time
+            do l = 1, i - 1
+                self%k(:, :, i) = self%k(:, :, i) + (c(i, l) / h) * self%k(:, :, l)
+            end do
+            call self%solve_all(chain, h, self%k(:, :, i), failed)
+            if (failed) return
+        end do
+        new(:, :) = new + self%k(:, :, stages)
+        error = maxval(abs(self%k(:controlled, :, stages)) * self%weights)
+        if (.not. all(abs(new) <= huge(error))) error = huge(error)
+    end subroutine step
+
+    !> Derivatives and matrices of all blocks. A block's neighbours act on its velocity by the
+    !> extensions of their drive springs alone: `answer` is what its unknowns do then.
+    subroutine factorise_all(self, chain, t, h, y, failed)
+        class(chain_stepper), intent(inout) :: self
+        type(chain_equations), intent(in) :: chain
+        real(dp), intent(in) :: t, h, y(:, :)
+        logical, intent(out) :: failed
+        real(dp) :: own(unknowns), growth
+        integer :: i, n
+
+        n = size(y, 2)
+        do i = 1, n
+            call chain%own_rates(i, t, y(:controlled, i), own, failed)
+            if (failed) return
+            associate (block => chain%blocks(min(i, size(chain%blocks))))
+                call differentiate(block, t, h, y(:, i), own, self%natural(:, i), &
+                    self%j(:, :, i), self%by_time(:, i), failed)
+            end associate
+            if (failed) return
+            self%j(velocity, extension, i) = self%j(velocity, extension, i) &
+                + chain%by_own_extension(i, n)
+            self%by_time(velocity, i) = self%by_time(velocity, i) + chain%by_walls(i, n, t)
+            call factorise(self%j(:, :, i), h, self%natural(:, i), self%matrix(:, :, i), &
+                self%pivot(:, i), growth, failed)
+            if (failed) return
+            self%answer(:, i) = 0.0_dp
+            self%answer(velocity, i) = 1.0_dp / chain%system%mass
+            call solve(self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
+                self%answer(:, i))
+        end do
+    end subroutine factorise_all
+
+    !> Turns right-hand sides into solutions: a tridiagonal system for the extensions, the other
+    !> unknowns of each block by themselves.
+    subroutine solve_all(self, chain, h, k, failed)
+        class(chain_stepper), intent(inout) :: self
+        type(chain_equations), intent(in) :: chain
+        real(dp), intent(in) :: h
+        real(dp), intent(inout) :: k(:, :)
+        logical, intent(out) :: failed
+        real(dp) :: pulled(size(k, 2))   !! force of the neighbours, a rate
+        integer :: i
+        logical :: solved
+
+        do i = 1, size(k, 2)
+            call solve(self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
+                k(:controlled, i))
+        end do
+        if (chain%system%coupling > 0.0_dp) then
+            self%neighbours%beside = -chain%system%coupling
+            self%neighbours%diagonal = -1.0_dp / self%answer(extension, :)
+            self%share = self%neighbours%diagonal * k(extension, :)
+            pulled = self%share
+            call self%neighbours%solve(self%share, solved)
+            failed = .not. solved
+            if (failed) return
+            pulled = self%share / self%answer(extension, :) + pulled
+            do i = 1, size(k, 2)
+                k(:controlled, i) = k(:controlled, i) + self%answer(:, i) * pulled(i)
+            end do
+        end if
+        failed = .false.
+        do i = 1, size(k, 2)
+            call follow(self%j(:, :, i), h, k(:, i))
+        end do
+    end subroutine solve_all
 
     !> Derivatives of the rates by the unknowns that act on them, and by time, by differences: taken
     !> in the sense of the loading, so that a mirrored motion has the mirrored steps.

@@ -183,6 +183,40 @@ class Motion(Chain):
             late.append(self.series()[-1])
         self.assertAlmostEqual(late[0][5], late[1][5], delta=0.02 * late[1][5])   # spring force
 
+    def test_rate_and_state_chains_are_followed_by_few_adaptive_steps_to_what_fixed_steps_tend_to(self):
+        text = """
+&friction law='rate_and_state' alpha_n=1 alpha_t=1 a=0.01 b=0.015 d_c=0.01 v0=1e-3 f0=0.6 theta_0=10 /
+&slider mass=1e-3 stiffness=1 damping=0.01 area=1000 normal_traction=0.01 /
+&drive velocity=0.2 /
+&initial mu=0.6 velocity=0.2 /
+&chain n_blocks=5 coupling=5 ends='periodic' scatter=0.2 slip_rate=0.5 /
+&time t_end=6.5 {0} /
+&output interval=100000 /
+"""
+        onsets = []
+        for steps in ('dt=1e-4', 'dt=5e-5', 'rtol=1e-5'):
+            result = self.run_text(text.format(steps), '--no-plot')
+            self.assert_done(result)
+            onsets.append([float(row['onset']) for row in self.rows('case_out/case_events.csv')][1:])
+        self.assertEqual([len(times) for times in onsets], [2, 2, 2])
+        for long, short, adaptive in zip(*onsets):   # fixed steps are of first order; theirs is the error, not less than a step
+            self.assertAlmostEqual(adaptive, 2 * short - long, delta=3e-3)
+        self.assertLess(int(result.stdout.split('steps')[1].split()[0]), 4000)
+
+    def test_a_single_block_between_walls_is_held_by_them_with_adaptive_steps_too(self):
+        late = []
+        for law, change in (("'subloading'", {}), ("'rate_and_state'", {('friction', key): value for key, value in (
+                ('a', '0.01'), ('b', '0.015'), ('d_c', '0.1'), ('v0', '1'), ('f0', '0.4'))})):
+            for steps in ({('time', 'dt'): '2e-5'}, {('time', 'rtol'): '1e-7'}):
+                text = namelist({**RUN, **change, **steps, ('friction', 'law'): law, ('chain', 'n_blocks'): '1',
+                                 ('chain', 'ends'): "'fixed'", ('chain', 'coupling'): '3', ('time', 't_end'): '3',
+                                 ('output', 'interval'): '1000000', ('slider', 'damping'): '0.02'},
+                                without=[('friction', key) for key in ('mu_s', 'mu_k', 'kappa', 'xi', 'm')] if change else ())
+                self.assert_done(self.run_text(text, '--no-plot'))
+                late.append(self.series()[-1][2])
+        for fixed, adaptive in (late[:2], late[2:]):
+            self.assertAlmostEqual(adaptive, fixed, delta=2e-3 * fixed)
+
 
 class LongSteps(Chain):
     """Steps as long as slip events: a step may carry a block past the fall of its friction, where Newton's

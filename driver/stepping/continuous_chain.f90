@@ -1,0 +1,208 @@
+!> Adaptive steps of a chain in continuous time by Rodas4, under rate-and-state friction and its
+!> relatives: what the law remembers changes so fast in slip that methods of low order take most of
+!> their steps for it. Without a shear cap, a damper beside the contact spring, or a normal traction
+!> that changes, so that the contacts of all blocks slide from first to last, if only by a little.
+module continuous_chain
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use abstract_integrator, only : step_report
+    use archive_file, only : archive
+    use chain_rates, only : chain_equations
+    use continuous_steps, only : continuous, fill_block, set_up, unknowns_of
+    use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
+    use rosenbrock, only : chain_stepper
+    use run_settings, only : settings
+    use slider_rates, only : damped, drive_work, extension, phase_slide, unknowns, velocity
+    use slider_system, only : ends_periodic, slider, slider_state
+    use step_ends, only : end_of_step, next_limit
+    implicit none
+    private
+
+    public :: chain_in_continuous_time, continuous_blocks
+
+    !> Part of the time that no step is shorter than.
+    real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
+
+    type, extends(continuous) :: continuous_blocks
+        type(chain_equations) :: chain
+        type(chain_stepper) :: rodas
+        !> Unknowns and their rates, before and after a step; one column a block.
+        real(dp), allocatable, dimension(:, :) :: now, now_rates, then, then_rates
+    contains
+        procedure :: prepare, step, visit
+        procedure, private :: set_weights_of_all, try, finish
+    end type continuous_blocks
+
+contains
+
+    !> Is a run one of a chain that this integrator takes?
+    function chain_in_continuous_time(run) result(yes)
+        type(settings), intent(in) :: run
+        logical :: yes
+        type(law_facts) :: law
+        integer :: i
+
+        law = friction_facts(run%props)
+        associate (normal => run%drive%normal)
+            yes = law%traits%stiff .and. .not. run%newmark .and. minval(normal) > 0.0_dp &
+                .and. maxval(normal) <= minval(normal) .and. .not. run%drive%amplitude > 0.0_dp &
+                .and. .not. any(abs(run%drive%normal_rate) > 0.0_dp) .and. plain(law)
+        end associate
+        if (.not. (yes .and. allocated(run%chain%constants))) return
+        do i = 1, size(run%chain%constants, 1)
+            yes = yes .and. plain(friction_facts(run%chain%constants(i, :)))
+        end do
+
+    contains
+
+        pure function plain(law) result(yes)
+            type(law_facts), intent(in) :: law
+            logical :: yes
+
+            yes = .not. (law%shear_cap < huge(law%shear_cap) .or. law%damping > 0.0_dp)
+        end function plain
+
+    end function chain_in_continuous_time
+
+    subroutine prepare(self, run, system, start)
+        class(continuous_blocks), intent(inout) :: self
+        type(settings), intent(in) :: run
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: start
+        real(dp) :: normal
+        integer :: i, n, different
+
+        call self%continuous%prepare(run, system, start)
+        n = size(start%x)
+        allocate (self%now(unknowns, n), self%now_rates(unknowns, n), self%then(unknowns, n), &
+            self%then_rates(unknowns, n))
+        self%known = .false.
+        call self%rodas%make_room(n, system%ends == ends_periodic)
+        self%chain%system = system
+        self%chain%drive = run%drive
+        self%chain%origin = self%origin
+        different = merge(n, 1, allocated(system%load) .or. allocated(system%constants))
+        allocate (self%chain%blocks(different))
+        do i = 1, n
+            associate (block => self%chain%blocks(min(i, different)))
+                normal = start%normal
+                if (allocated(system%load)) normal = normal * system%load(i)
+                if (i <= different) then
+                    call set_up(run, system%props_of(i), normal, block, self%rodas%natural(:, i))
+                    block%phase = phase_slide
+                    block%drive%normal = [normal]
+                    block%drive%normal_rate = [0.0_dp]
+                else
+                    self%rodas%natural(:, i) = self%rodas%natural(:, 1)
+                end if
+                self%now(:, i) = unknowns_of(block, system, start, i)
+            end associate
+        end do
+        self%now(drive_work, 1) = start%drive_work
+        self%now(damped, 1) = start%damped
+    end subroutine prepare
+
+    subroutine step(self, old, new, report)
+        class(continuous_blocks), intent(inout) :: self
+        type(slider_state), intent(inout) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(out) :: report
+        real(dp) :: end, wanted, h, error
+        integer :: piece
+        logical :: failed, again
+
+        piece = self%drive%piece(old%time)
+        if (piece /= self%chain%piece) then
+            call self%chain%enter(piece)
+            self%known = .false.
+        end if
+        if (old%time >= self%limit) self%limit = next_limit(self%drive, self%every, self%t_end, &
+            4.0_dp * shortest, old%time)
+        if (.not. self%known) call self%chain%rates(old%time, self%now, self%now_rates, failed)
+        call self%set_weights_of_all()
+        again = .false.
+        do
+            wanted = min(self%dt, self%dt_max)
+            end = end_of_step(old%time, wanted, self%limit)
+            h = end - old%time
+            call self%try(old%time, end, error)
+            if (error <= 1.0_dp) exit
+            self%rejected = self%rejected + 1
+            again = .true.
+            self%dt = h * max(0.2_dp, 0.9_dp * error**(-0.25_dp))
+            if (self%dt < max(self%dt_min, shortest * old%time)) then
+                report%status = merge(friction_no_convergence, friction_no_rate, &
+                    error < huge(error))
+                return
+            end if
+        end do
+        self%dt = h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(error, 1.0e-10_dp)**(-0.25_dp))
+        if (h < 0.99_dp * wanted) self%dt = max(self%dt, wanted)   ! the limit has cut it
+        call self%finish(end, old, new)
+    end subroutine step
+
+    !> What the error of each unknown is compared with: its own size, but not less than the
+    !> amplitude of the contact's ringing.
+    pure subroutine set_weights_of_all(self)
+        class(continuous_blocks), intent(inout) :: self
+        integer, parameter :: growing(2) = [extension, velocity]
+        integer :: k
+
+        associate (weights => self%rodas%weights, natural => self%rodas%natural)
+            weights = 1.0_dp / (self%rtol * natural)
+            do k = 1, size(growing)
+                weights(growing(k), :) = 1.0_dp / (self%rtol * max(natural(growing(k), :), &
+                    abs(self%now(growing(k), :))))
+            end do
+        end associate
+    end subroutine set_weights_of_all
+
+    subroutine try(self, start, end, error)
+        class(continuous_blocks), intent(inout) :: self
+        real(dp), intent(in) :: start, end   !! [T]
+        real(dp), intent(out) :: error       !! part of the tolerated one
+        integer, parameter :: stages = 6
+        logical :: failed
+
+        call self%rodas%step(self%chain, start, end - start, self%now, self%now_rates, self%then, &
+            error)
+        call self%count_iterations(stages)
+        if (error > 1.0_dp) return
+        call self%chain%rates(end, self%then, self%then_rates, failed)
+        if (failed) error = huge(error)
+    end subroutine try
+
+    !> Takes over the end of a step.
+    subroutine finish(self, t, old, new)
+        class(continuous_blocks), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        integer :: i
+
+        self%now(:, :) = self%then
+        self%now_rates(:, :) = self%then_rates
+        self%known = .true.
+        new%time = t
+        new%drive = self%origin + self%drive%position(t)
+        new%normal = old%normal
+        new%load = old%load
+        new%drive_work = sum(self%now(drive_work, :))
+        new%damped = sum(self%now(damped, :))
+        new%statev(:, :) = old%statev
+        do i = 1, size(new%x)
+            call fill_block(self%chain%blocks(min(i, size(self%chain%blocks))), self%system, t, &
+                self%now(:, i), self%now_rates(:, i), i, old, new)
+        end do
+    end subroutine finish
+
+    subroutine visit(self, file)
+        class(continuous_blocks), intent(inout) :: self
+        type(archive), intent(inout) :: file
+
+        call self%visit_counts(file)
+        call file%visit(self%now)
+        call file%visit(self%dt)
+        self%known = .false.
+    end subroutine visit
+
+end module continuous_chain
