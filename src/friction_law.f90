@@ -102,7 +102,6 @@ module friction_law
         procedure :: resistance_at => resistance_at_any_rate
         procedure :: traits => simple_traits
         procedure :: slopes => slopes_of_convex
-        procedure :: slide_uncapped => slide_as_ever
         procedure :: scale_of_terms => scale_of_itself
         procedure :: settle => settled_already
         procedure :: needs_time => needs_no_time
@@ -196,7 +195,7 @@ module friction_law
         end subroutine rest_interface
 
         !> Resistance after sliding by `slip`, with the derivatives that the consistent tangent
-        !> needs.
+        !> needs; without the cap, which is the return mapping's.
         pure subroutine slide_interface(self, slip, pressure, dt, old, new, resistance, d_slip, &
             d_pressure)
             import :: law, law_state, wp
@@ -277,22 +276,6 @@ contains
         real(wp), intent(in) :: pressure       !! contact pressure, > 0 [F/L^2]
         type(sliding), intent(inout) :: answer
     end subroutine settled_already
-
-    !> `slide` without the cap that the law may have.
-    pure subroutine slide_as_ever(self, slip, pressure, dt, old, new, resistance, d_slip, &
-        d_pressure)
-        class(law), intent(in) :: self
-        real(wp), intent(in) :: slip            !! slip in this increment, >= 0 [L]
-        real(wp), intent(in) :: pressure        !! contact pressure, > 0 [F/L^2]
-        real(wp), intent(in) :: dt              !! increment of time, >= 0 [T]
-        type(law_state), intent(in) :: old      !! state at the start of the increment
-        type(law_state), intent(out) :: new     !! state at its end
-        real(wp), intent(out) :: resistance     !! tangential traction [F/L^2]
-        real(wp), intent(out) :: d_slip         !! d(resistance)/d(slip) [F/L^3]
-        real(wp), intent(out) :: d_pressure     !! d(resistance)/d(pressure) [-]
-
-        call self%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
-    end subroutine slide_as_ever
 
     !> Does the resistance depend on the slip rate, which an increment without time leaves
     !> undefined? A law of which that is true overrides this.

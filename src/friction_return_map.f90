@@ -317,8 +317,8 @@ contains
 
         call spring%at(there%x, there%spring)
         there%law%slip = there%spring%slip
-        call surface%slide_uncapped(there%law%slip, this%pressure, this%dt, this%old, &
-            there%law%state, there%law%resistance, there%law%d_slip, there%law%d_pressure)
+        call surface%slide(there%law%slip, this%pressure, this%dt, this%old, there%law%state, &
+            there%law%resistance, there%law%d_slip, there%law%d_pressure)
         there%g = there%spring%traction - there%law%resistance
     end subroutine slide_to
 

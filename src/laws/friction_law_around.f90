@@ -13,6 +13,7 @@ module friction_law_around
     contains
         procedure :: virgin
         procedure :: admits
+        procedure :: slide
         procedure :: state_rates
         procedure :: traits
         procedure :: scale_of_terms
@@ -39,6 +40,16 @@ contains
 
         valid = self%inner%admits(state)
     end function admits
+
+    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+        class(law_around), intent(in) :: self
+        real(wp), intent(in) :: slip, pressure, dt
+        type(law_state), intent(in) :: old
+        type(law_state), intent(out) :: new
+        real(wp), intent(out) :: resistance, d_slip, d_pressure
+
+        call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
+    end subroutine slide
 
     pure function state_rates(self, state, load, slip_rate) result(rates)
         class(law_around), intent(in) :: self

@@ -4,7 +4,8 @@
 !>     resistance = min(resistance of the law, tau_max)
 !>
 !> The law's internal variables evolve as without the cap, with the slip that results. Where the cap
-!> holds, the traction depends neither on the slip nor on the pressure.
+!> holds, the traction depends neither on the slip nor on the pressure. In an increment that slides
+!> it is the return mapping that cuts the resistance off.
 module friction_shear_cap
     use friction_kinds, only : wp
     use friction_law, only : below, law_state, load_rates
@@ -24,10 +25,8 @@ module friction_shear_cap
     type, extends(law_around) :: capped_law
     contains
         procedure :: rest
-        procedure :: slide
         procedure :: slip_rate
         procedure :: resistance_at
-        procedure :: slide_uncapped
     end type capped_law
 
 contains
@@ -42,31 +41,6 @@ contains
         call self%inner%rest(traction, pressure, dt, old, new, strength)
         strength = min(strength, self%tau_max)
     end subroutine rest
-
-    pure subroutine slide(self, slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
-        class(capped_law), intent(in) :: self
-        real(wp), intent(in) :: slip, pressure, dt
-        type(law_state), intent(in) :: old
-        type(law_state), intent(out) :: new
-        real(wp), intent(out) :: resistance, d_slip, d_pressure
-
-        call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
-        if (resistance < self%tau_max) return
-        resistance = self%tau_max
-        d_slip = 0.0_wp
-        d_pressure = 0.0_wp
-    end subroutine slide
-
-    pure subroutine slide_uncapped(self, slip, pressure, dt, old, new, resistance, d_slip, &
-        d_pressure)
-        class(capped_law), intent(in) :: self
-        real(wp), intent(in) :: slip, pressure, dt
-        type(law_state), intent(in) :: old
-        type(law_state), intent(out) :: new
-        real(wp), intent(out) :: resistance, d_slip, d_pressure
-
-        call self%inner%slide(slip, pressure, dt, old, new, resistance, d_slip, d_pressure)
-    end subroutine slide_uncapped
 
     !> At the cap, the slip that keeps the traction there, or more where the law itself asks for it.
     !> Where its own strength is higher, the law has no say unless that falls with the slip rate.

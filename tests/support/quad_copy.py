@@ -31,7 +31,7 @@ def with_a_counter(text: str) -> str:
     text = re.sub(r'\bpure ', '', text)
     text = text.replace('use counted_friction_kinds, only : ', 'use counted_friction_kinds, only : evaluations, ')
     count = r'\1evaluations = evaluations + 1\n\1\2'
-    text = re.sub(r'( +)(call (?:surface%slide_uncapped|self%slide|slide)\()', count, text)
+    text = re.sub(r'( +)(call (?:(?:surface|self)%slide|slide)\()', count, text)
     if 'pair (s, ' in text:   # laws whose own method does not call `slide`
         text = re.sub(r'(        do iteration = 1, max_iterations\n)', r'\1            evaluations = evaluations + 1\n', text)
     return text
