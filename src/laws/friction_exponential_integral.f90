@@ -19,7 +19,7 @@ module friction_exponential_integral
 
 contains
 
-    !> E1(y); relative error below 1e-14.
+    !> E1(y); relative error below 2e-14, next to y = 2, where terms of 1.3 leave 0.05.
     elemental function e1(y) result(v)
         real(wp), intent(in) :: y   !! > 0
         real(wp) :: v
@@ -67,7 +67,7 @@ contains
             do iteration = 1, max_iterations
                 scaled = scaled_e1(y)
                 step = (log(scaled) - (y + log_v)) * y * scaled
-                y = max(y + step, 0.5_wp * y)
+                y = y + step
                 if (abs(step) <= small_step) exit
             end do
         end if
@@ -78,16 +78,16 @@ contains
         real(wp), intent(in) :: y   !! 0 to about 2
         real(wp) :: ein
         integer :: k
-        !> Of -(-y)^(k+1): 1/((k + 1) (k + 1)!).
-        real(wp), parameter :: c(0:23) = [(1.0_wp / ((k + 1) * gamma(k + 2.0_wp)), k = 0, 23)]
+        !> Of -(-y)^(k+1): 1/((k + 1) (k + 1)!); the next term is below 1e-15 of E1 up to y = 2.
+        real(wp), parameter :: c(0:21) = [(1.0_wp / ((k + 1) * gamma(k + 2.0_wp)), k = 0, 21)]
         real(wp) :: even, odd, z
 
         ! two short chains of operations in place of a long one
         z = y * y
         even = c(0) + z * (c(2) + z * (c(4) + z * (c(6) + z * (c(8) + z * (c(10) + z * (c(12) + &
-            z * (c(14) + z * (c(16) + z * (c(18) + z * (c(20) + z * (c(22))))))))))))
+            z * (c(14) + z * (c(16) + z * (c(18) + z * c(20))))))))))
         odd = c(1) + z * (c(3) + z * (c(5) + z * (c(7) + z * (c(9) + z * (c(11) + z * (c(13) + z &
-            * (c(15) + z * (c(17) + z * (c(19) + z * (c(21) + z * (c(23))))))))))))
+            * (c(15) + z * (c(17) + z * (c(19) + z * c(21))))))))))
         ein = y * (even - y * odd)
     end function entire_part
 
@@ -114,9 +114,9 @@ contains
         t = (y - 7.0_wp) / (y + 3.0_wp)
         z = t * t
         even = c(0) + z * (c(2) + z * (c(4) + z * (c(6) + z * (c(8) + z * (c(10) + z * (c(12) + &
-            z * (c(14) + z * (c(16) + z * (c(18) + z * (c(20) + z * (c(22))))))))))))
+            z * (c(14) + z * (c(16) + z * (c(18) + z * (c(20) + z * c(22)))))))))))
         odd = c(1) + z * (c(3) + z * (c(5) + z * (c(7) + z * (c(9) + z * (c(11) + z * (c(13) + z &
-            * (c(15) + z * (c(17) + z * (c(19) + z * (c(21) + z * (c(23))))))))))))
+            * (c(15) + z * (c(17) + z * (c(19) + z * (c(21) + z * c(23)))))))))))
         scaled = (even + t * odd) / y
     end function scaled_e1
 

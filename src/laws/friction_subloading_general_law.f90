@@ -14,7 +14,7 @@
 module friction_subloading_general_law
     use friction_kinds, only : wp
     use friction_law, only : law_state, sliding, unbounded
-    use friction_subloading_general_core, only : half_pi, reciprocal_root
+    use friction_subloading_general_core, only : half_pi, reciprocal_root, start_slip
     use friction_subloading_law, only : subloading_law, u_reciprocal
     implicit none
     private
@@ -63,7 +63,7 @@ contains
         small = 0.1_wp * sqrt(epsilon(small))      ! the next error is about the square of a step
         low = 0.0_wp
         high = trial / stiffness
-        s = start(self%m, old%r, mu * pressure + self%cohesion, trial, stiffness)
+        s = start_slip(self%m, old%r, mu * pressure + self%cohesion, trial, stiffness)
         do iteration = 1, max_iterations
             answer%slip = s
             call slide(self, s, pressure, dt, old, answer%state, answer%resistance, &
@@ -95,30 +95,6 @@ contains
             u = sin(half_pi * (1.0_wp - r)) / sin(half_pi * r)
         end if
     end function u_of
-
-    !> The slip for constant mu by the reciprocal, where R solves a quadratic equation; zero if it
-    !> drowns in round-off.
-    pure function start(m, r_n, full, trial, stiffness) result(s)
-        real(wp), intent(in) :: m           !! of the law [1/L]
-        real(wp), intent(in) :: r_n         !! R at the start of the increment [-]
-        real(wp), intent(in) :: full        !! traction of the normal sliding surface [F/L^2]
-        real(wp), intent(in) :: trial       !! tangential traction without slip [F/L^2]
-        real(wp), intent(in) :: stiffness   !! tangential stiffness [F/L^3]
-        real(wp) :: s                       !! >= 0 [L]
-        real(wp) :: unit, a, b, c, root, r
-
-        unit = stiffness + m * (trial + full)   ! so that no square overflows
-        a = (stiffness - m * full) / unit
-        b = (m * (trial + full) - stiffness * r_n) / unit
-        c = m * trial / unit
-        root = sqrt(max(b**2 + 4.0_wp * a * c, 0.0_wp))
-        if (b > 0.0_wp) then
-            r = 2.0_wp * c / (b + root)
-        else
-            r = 0.5_wp * (root - b) / a
-        end if
-        s = max((trial - full * r) / stiffness, 0.0_wp)
-    end function start
 
     !> mu after a slip, and -d(mu)/ds, which is never negative and shrinks with the slip.
     pure subroutine friction_coefficient(self, slip, dt, old, mu, fall)
