@@ -15,6 +15,7 @@ submodule(friction_mod) friction_batch
 
     integer, parameter :: line = 8            !! numbers of a cache line
     integer, parameter :: few = 16 * lanes    !! points that are not worth a second thread
+    integer, parameter :: columns_room = lanes * n_constants + line   !! to begin at a line
 
     !> What a call is about.
     type, extends(array_sizes) :: batch
@@ -25,7 +26,8 @@ submodule(friction_mod) friction_batch
                                        !! constants for all: it has a kernel of its own
         real(wp) :: plain_constants(8)              !! for that kernel
         real(wp) :: viscous            !! stiffness of the damper, eta_t/dt [F/L^3]
-        real(wp) :: constants(lanes, n_constants)   !! for all points, if they share them
+        real(wp) :: room(columns_room)   !! constants of all points, if they share them, in columns
+        integer :: start               !! where these begin
     end type batch
 
     interface
@@ -124,7 +126,7 @@ contains
         real(wp), intent(inout) :: traction(sizes%points, sizes%ndir)
         real(wp), intent(inout), target :: tangent(sizes%points, sizes%ndir, sizes%ndir)
         integer, intent(out) :: status(sizes%points)
-        type(batch) :: this
+        type(batch), target :: this
         integer(int64) :: head, block, last_block
 
         if (sizes%points == 0) return
@@ -164,7 +166,7 @@ contains
 
     !> Plans the lanes, by the first point whose constants are valid.
     pure subroutine prepare(this, sizes, dtime, rows, props)
-        type(batch), intent(out) :: this
+        type(batch), intent(out), target :: this
         type(array_sizes), intent(in) :: sizes
         real(wp), intent(in) :: dtime
         integer(int64), intent(in) :: rows
@@ -194,7 +196,8 @@ contains
         if (this%plan%damping > 0.0_wp .and. dtime > 0.0_wp) this%viscous = this%plan%damping &
             / dtime
         if (.not. this%viscous < most) this%plan%kind = lane_none
-        if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%constants)
+        this%start = line_start(this%room)
+        if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%room(this%start))
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
             .and. this%plan%options == 0 .and. max(this%plan%cohesion, this%viscous) <= 0.0_wp
         associate (value => this%plan%source%value)
@@ -211,9 +214,10 @@ contains
         real(wp), intent(inout) :: traction(this%points, this%ndir)
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(inout) :: status(this%points)
-        real(wp) :: constants(lanes, n_constants)
+        real(wp), target :: room(columns_room)
         integer(c_int) :: left(lanes)
         integer(int64) :: i
+        integer :: start
 
         if (last < first) return
         if (this%plan%kind == lane_none) then
@@ -221,17 +225,25 @@ contains
                 call update_point_of(this, i, du, props, statev, traction, tangent, status(i))
             end do
         else if (this%rows > 1) then
+            start = line_start(room)
             call constants_kernel(this%plan%source, this%rows, int(last - first, c_int) + 1_c_int, &
-                props(first, 1), constants, left)
-            constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
-            call update_lanes(this, first, last, constants, du, props, left, statev, traction, &
+                props(first, 1), room(start), left)
+            call update_lanes(this, first, last, room(start), du, props, left, statev, traction, &
                 tangent, status)
         else
             left = 0
-            call update_lanes(this, first, last, this%constants, du, props, left, statev, &
+            call update_lanes(this, first, last, this%room(this%start), du, props, left, statev, &
                 traction, tangent, status)
         end if
     end subroutine update_range
+
+    !> The first number that begins a cache line.
+    pure function line_start(room) result(start)
+        real(wp), intent(in), target :: room(line)
+        integer :: start
+
+        start = 1 + int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
+    end function line_start
 
     !> The same by lanes; points that they leave go one by one.
     subroutine update_lanes(this, first, last, constants, du, props, left, statev, traction, &

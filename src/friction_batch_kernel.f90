@@ -471,7 +471,9 @@ contains
             do k = c_own, c_own + task%n_own - 1
                 call pack_column(packed%n, place, constants(:, k), packed_constants(:, k))
             end do
-            call pack_column(packed%n, place, constants(:, c_cap), packed_constants(:, c_cap))
+            if (iand(task%options, with_cap) > 0) then
+                call pack_column(packed%n, place, constants(:, c_cap), packed_constants(:, c_cap))
+            end if
             call slide(task, packed_constants, own_strength, packed)
         else
             call slide(task, constants, own_strength, packed)

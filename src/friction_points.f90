@@ -59,7 +59,7 @@ contains
         real(wp), intent(inout) :: traction(sizes%ndir, sizes%points)
         real(wp), intent(inout) :: tangent(sizes%ndir, sizes%ndir, sizes%points)
         integer, intent(out) :: status(sizes%points)
-        type(batch) :: this   ! of one block
+        type(batch), target :: this   ! of one block
         integer(int64) :: number, last_block
 
         if (sizes%points == 0) return
@@ -92,8 +92,8 @@ contains
 
             first = (number - 1) * lanes + 1
             count = int(min(int(lanes, int64), sizes%points - first + 1))
-            start = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
-            call update_transposed(this, count, room(start + 1), du(1, first), props, &
+            start = line_start(room)
+            call update_transposed(this, count, room(start), du(1, first), props, &
                 sizes%nstatv, statev(1, first), traction(1, first), tangent(1, 1, first), &
                 status(first))
         end subroutine update_block

@@ -13,25 +13,31 @@ module friction_points_kernel
 
 contains
 
+    !> Assignments one by one, here and below: of a loop over the components the compiler makes
+    !> scalar ones, or picks one number of each vector.
     subroutine to_components(du, statev, du_block, statev_block) &
         bind(C, name='stickslip_points_kernel_in')
         real(wp), intent(in) :: du(3, lanes), statev(8, lanes)
         real(wp), intent(inout) :: du_block(apart, 3), statev_block(apart, 8)
-        integer :: i, k
+        integer :: i
 
-        do k = 1, 3
-            do i = 1, lanes
-                du_block(i, k) = du(k, i)
-            end do
+        do i = 1, lanes
+            du_block(i, 1) = du(1, i)
+            du_block(i, 2) = du(2, i)
+            du_block(i, 3) = du(3, i)
         end do
-        do k = 1, 8
-            do i = 1, lanes
-                statev_block(i, k) = statev(k, i)
-            end do
+        do i = 1, lanes
+            statev_block(i, 1) = statev(1, i)
+            statev_block(i, 2) = statev(2, i)
+            statev_block(i, 3) = statev(3, i)
+            statev_block(i, 4) = statev(4, i)
+            statev_block(i, 5) = statev(5, i)
+            statev_block(i, 6) = statev(6, i)
+            statev_block(i, 7) = statev(7, i)
+            statev_block(i, 8) = statev(8, i)
         end do
     end subroutine to_components
 
-    !> Assignments one by one: of a loop over the components the compiler makes scalar ones.
     subroutine to_points(statev_block, traction_block, tangent_block, statev, traction, tangent) &
         bind(C, name='stickslip_points_kernel_out')
         real(wp), intent(in) :: statev_block(apart, 8), traction_block(apart, 3)
