@@ -10,7 +10,7 @@ module time_integrator
     implicit none
     private
 
-    public :: generalised_alpha, newmark
+    public :: generalised_alpha, newmark, round_off_of
 
     !> Room for a step, kept from one to the next; one number a block.
     type :: workspace
@@ -143,7 +143,7 @@ contains
                                                                    !! a search serves better then
         real(dp) :: norm_old
         integer :: halving, most
-        logical :: solved
+        logical :: solved, final
 
         most = self%max_iterations
         if (size(old%x) == 1) most = min(most, most_of_one)
@@ -162,21 +162,31 @@ contains
                 call w%matrix%solve(w%correction, solved)
                 if (.not. solved) return
                 report%iterations = report%iterations + 1
-                ! too small a correction to change the displacements: as exact as they get
-                balanced = all(abs(w%correction) <= epsilon(w%dx) * abs(old%x + w%dx))
-                if (balanced) return
-
+                final = all(abs(w%correction) <= round_off_of(w%dx, old%v, old%a, self%now%dt))
                 w%dx_old = w%dx
                 norm_old = self%now%norm
                 do halving = 0, max_halvings
                     w%dx = w%dx_old + w%correction / 2**halving
                     call evaluate(self, system, old, new, report)
                     if (report%status < 0) return
-                    if (self%now%norm < norm_old) exit
+                    if (self%now%norm < norm_old .or. final) exit
                 end do
+                balanced = final
+                if (balanced) return
             end do
         end associate
     end subroutine iterate
+
+    !> To what a step's displacements can be known: by the size of what they are made of, which is
+    !> less than where the blocks are by many digits. Velocities and accelerations follow from it.
+    elemental function round_off_of(dx, v, a, dt) result(length)
+        real(dp), intent(in) :: dx         !! displacement in the step [L]
+        real(dp), intent(in) :: v, a       !! before it [L/T, L/T^2]
+        real(dp), intent(in) :: dt         !! [T]
+        real(dp) :: length                 !! [L]
+
+        length = 4.0_dp * epsilon(dx) * (abs(dx) + dt * (abs(v) + dt * abs(a)))
+    end function round_off_of
 
     !> The balance by brackets, where Newton's method does not settle: blocks that are no neighbours
     !> of one another each go to their own first balance while the others stand still, in turns.
@@ -249,8 +259,8 @@ contains
                 balanced = .true.
                 do i = first, last, 2
                     if (abs(w%residual(i)) <= 0.5_dp * self%tolerance * self%now%scale) cycle
-                    call brackets(i)%narrow(w%residual(i), w%matrix%diagonal(i), old%x(i), &
-                        w%dx(i), settled)
+                    call brackets(i)%narrow(w%residual(i), w%matrix%diagonal(i), &
+                        round_off_of(w%dx(i), old%v(i), old%a(i), self%now%dt), w%dx(i), settled)
                     balanced = balanced .and. settled
                 end do
                 if (balanced) return
@@ -264,11 +274,11 @@ contains
 
     !> The next place to look at, from the residual and its slope at the one before: twice as far
     !> each time until the force has turned, then by Newton's method and halves in turns.
-    pure subroutine narrow(self, residual, slope, origin, place, settled)
+    pure subroutine narrow(self, residual, slope, finest, place, settled)
         class(root_bracket), intent(inout) :: self
         real(dp), intent(in) :: residual      !! at `place` [F]
         real(dp), intent(in) :: slope         !! by which it falls there [F/L]
-        real(dp), intent(in) :: origin        !! from which `place` is measured [L]
+        real(dp), intent(in) :: finest        !! round-off of `place` [L]
         real(dp), intent(inout) :: place      !! [L]
         logical, intent(out) :: settled       !! the bracket is as narrow as round-off lets it be
         real(dp) :: newton
@@ -285,7 +295,7 @@ contains
             self%stride = 2.0_dp * self%stride
             return
         end if
-        settled = abs(self%high - self%low) <= 2.0_dp * epsilon(place) * abs(origin + place)
+        settled = abs(self%high - self%low) <= finest
         if (settled) return
         newton = place + residual / slope
         self%halve = .not. self%halve
@@ -335,9 +345,9 @@ contains
                     + abs(new%friction(i)) + abs(system%mass * new%a(i)))
                 farthest = max(farthest, abs(new%x(i)))
             end do
-            ! the forces of stiff springs between neighbours are no better known than by round-off
-            scale = max(scale, 8.0_dp * epsilon(scale) * system%coupling * farthest &
-                / self%tolerance)
+            ! the forces of springs are no better known than the places of their ends
+            scale = max(scale, 8.0_dp * epsilon(scale) * (system%stiffness + system%coupling) &
+                * farthest / self%tolerance)
             call system%add_coupling(new%x, 1.0_dp - self%alpha_f, residual)
             norm = 0.0_dp
             do i = 1, size(dx)

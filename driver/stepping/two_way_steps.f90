@@ -6,7 +6,7 @@ module two_way_steps
     use friction_mod, only : friction_no_convergence, friction_ok, friction_update, statev_size, &
         statev_u_n
     use slider_system, only : slider, slider_state
-    use time_integrator, only : newmark
+    use time_integrator, only : newmark, round_off_of
     implicit none
     private
 
@@ -51,7 +51,7 @@ contains
         type(trial) :: now, next
         real(dp) :: correction(2)
         integer :: halving
-        logical :: balanced
+        logical :: balanced, final
 
         report%iterations = 0
         report%status = friction_no_convergence
@@ -69,15 +69,16 @@ contains
             if (balanced .or. report%iterations == self%max_iterations) exit
             correction = solved(now%stiffness, now%residual)
             report%iterations = report%iterations + 1
-            balanced = all(abs(correction) <= epsilon(dt) * abs([old%x(1), &
-                old%statev(1, statev_u_n)] + now%moved))
-            if (balanced) exit
+            final = all(abs(correction) <= round_off_of(now%moved, [old%v(1), old%v_n], &
+                [old%a(1), old%a_n], dt))
             do halving = 0, most_halvings
                 next%moved = now%moved + correction / 2**halving
                 call evaluate(self, system, dt, old, new, next)
-                if (next%status < 0 .or. next%misfit() < now%misfit()) exit
+                if (next%status < 0 .or. next%misfit() < now%misfit() .or. final) exit
             end do
             now = next
+            balanced = final
+            if (balanced) exit
         end do
         report%status = now%status
         if (now%status < 0) return
@@ -126,6 +127,9 @@ contains
             + self%alpha_m * [old%a(1), old%a_n])
         this%scale = max(abs(new%spring(1)) + abs(new%friction(1)) + abs(mass(1) * new%a(1)), &
             system%area * (abs(new%load) + new%normal) + abs(mass(2) * new%a_n))
+        this%scale = max(this%scale, 8.0_dp * epsilon(dt) / self%tolerance &
+            * ((system%stiffness + abs(system%across%tilt)) * abs(new%x(1)) &
+            + (system%across%stiffness + abs(system%across%tilt)) * abs(statev(statev_u_n))))
         this%stiffness = system%area * tangent([2, 1], [2, 1])
         this%stiffness(1, 1) = this%stiffness(1, 1) + system%stiffness
         this%stiffness(1, 2) = this%stiffness(1, 2) + system%across%tilt

@@ -55,6 +55,14 @@ class Motion(Program):
         return two_way({'mu': repr(mu)}, drive={'velocity': '20'}, time={'t_end': '8', 'dt': None, **time},
                        initial={'mu': repr(mu), 'velocity': '20', 'spring_force': repr(K * stretch)})
 
+    def test_where_the_block_is_does_not_matter(self):
+        there = [self.series(two_way(time={'t_end': '0.5', 'dt': '2e-5'}, initial={'displacement': str(place)})) for place in (0, 2**22)]
+        for key in ('velocity', 'normal_traction'):
+            largest = max(abs(row[key] - there[0][0][key]) for row in there[0])
+            apart = max(abs(a[key] - b[key]) for a, b in zip(*there, strict=True))
+            self.assertGreater(largest, 0.1)
+            self.assertLess(apart, 2e-7 * largest)
+
     @staticmethod
     def modes(mu, t):
         """Distance across from steady sliding: the solution of the linear equations in both directions."""
