@@ -4,7 +4,7 @@ module fault_recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_events, only : event_watch, fault_event
     use fault_problem, only : fault, fault_state
-    use number_text, only : full_row
+    use number_text, only : full_row, whole_text
     use processes, only : team
     use text_file, only : output_file
     implicit none
@@ -86,10 +86,8 @@ contains
         character(len=*), intent(in) :: base
         integer, intent(in) :: i
         character(len=:), allocatable :: name
-        character(len=12) :: number
 
-        write (number, '(i0)') i
-        name = base // '_station_' // trim(number) // '.csv'
+        name = base // '_station_' // whole_text(i) // '.csv'
     end function station_name
 
     !> Opens the files where a checkpoint has left them.

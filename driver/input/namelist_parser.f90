@@ -6,6 +6,7 @@
 !> that reader skips.
 module namelist_parser
     use fault_list, only : append_fault, fault
+    use number_text, only : whole_text
     use printable_text, only : lower, printable
     implicit none
     private
@@ -113,7 +114,6 @@ contains
         type(parsed_text), intent(inout) :: parsed
         type(group_seen) :: seen
         character(len=:), allocatable :: name
-        character(len=12) :: first
         integer :: i
 
         name = name_at(text, here%at)
@@ -125,9 +125,8 @@ contains
         group = name
         do i = 1, size(parsed%groups)
             if (parsed%groups(i)%name /= group) cycle
-            write (first, '(i0)') parsed%groups(i)%line
             call add_fault(parsed, here%line, 'group &' // group &
-                // ' is given twice, first in line ' // trim(first))
+                // ' is given twice, first in line ' // whole_text(parsed%groups(i)%line))
             exit
         end do
         seen%name = group

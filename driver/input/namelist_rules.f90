@@ -1,6 +1,7 @@
 !> The numbers that a key of the input may take, and the rule in words.
 module namelist_rules
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use number_text, only : whole_text
     implicit none
     private
 
@@ -76,13 +77,11 @@ contains
         integer :: exponent
 
         if (abs(number - anint(number)) <= 0.0_dp) then
-            write (buffer, '(i0)') nint(number)
-            text = trim(buffer)
+            text = whole_text(nint(number))
         else if (abs(number) < 1.0e-3_dp) then
             exponent = floor(log10(abs(number)) + 1.0e-9_dp)
-            write (buffer, '(i0)') exponent
             text = short(1.0e-3_dp * anint(1.0e3_dp * number / 10.0_dp**exponent)) // 'e' &
-                // trim(buffer)
+                // whole_text(exponent)
         else
             write (buffer, '(f24.3)') number
             text = trim(adjustl(buffer))

@@ -357,7 +357,11 @@ contains
         status = friction_ok
         if (size(dx) < few) then
             do first = 1, size(dx)
-                call force_on_one(first, part_status)
+                if (allocated(system%constants)) then
+                    call force_on_one(first, system%constants(first, :), part_status)
+                else
+                    call force_on_one(first, system%props, part_status)
+                end if
                 if (part_status /= friction_ok) status = part_status
                 if (status < 0) return
             end do
@@ -373,25 +377,17 @@ contains
 
     contains
 
-        subroutine force_on_one(i, point_status)
+        subroutine force_on_one(i, props, point_status)
             integer, intent(in) :: i
+            real(dp), intent(in) :: props(:)
             integer, intent(out) :: point_status
             real(dp) :: du(2), statev(statev_size), traction(2), tangent(2, 2)
 
-            if (allocated(system%constants)) then
-                du = [-normal / system%constants(i, prop_alpha_n), dx(i)]
-            else
-                du = [-normal / system%props(prop_alpha_n), dx(i)]
-            end if
+            du = [-normal / props(prop_alpha_n), dx(i)]
             if (allocated(system%load)) du(1) = du(1) * system%load(i)
             du(1) = du(1) - old(i, statev_u_n)
             statev = old(i, :)
-            if (allocated(system%constants)) then
-                call friction_update(du, dt, system%constants(i, :), statev, traction, tangent, &
-                    point_status)
-            else
-                call friction_update(du, dt, system%props, statev, traction, tangent, point_status)
-            end if
+            call friction_update(du, dt, props, statev, traction, tangent, point_status)
             if (point_status < 0) return
             new(i, :) = statev
             force(i) = system%area * traction(2)

@@ -5,7 +5,7 @@ module picture
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use child_process, only : run_command
     use embedded_texts, only : get_text
-    use number_text, only : short_text
+    use number_text, only : short_text, whole_text
     use platform, only : have_command, shell_word
     use text_file, only : output_file
     use unit_names, only : units
@@ -69,10 +69,8 @@ contains
         class(picture_values), intent(inout) :: self
         character(len=*), intent(in) :: name
         integer, intent(in) :: value
-        character(len=12) :: digits
 
-        write (digits, '(i0)') value
-        self%text = self%text // name // ' = ' // trim(digits) // new_line('a')
+        self%text = self%text // name // ' = ' // whole_text(value) // new_line('a')
     end subroutine set_integer
 
     !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png and .svg with it. `problem` says what

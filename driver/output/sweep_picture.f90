@@ -1,7 +1,7 @@
 !> The picture of a sweep, from its table: curves over one key, maps over two.
 module sweep_picture
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use number_text, only : short_text
+    use number_text, only : short_text, whole_text
     use picture, only : picture_values
     use sweep_settings, only : sweep_plan
     implicit none
@@ -45,14 +45,12 @@ contains
         real(dp), intent(in) :: values(:)
         character(len=:), allocatable :: text
         integer, parameter :: most = 16
-        character(len=12) :: place
         integer :: i
 
         text = ''
         do i = 1, size(values), 1 + (size(values) - 1) / most
-            write (place, '(i0)') i - 1
             if (i > 1) text = text // ', '
-            text = text // '"' // short_text(values(i)) // '" ' // trim(place)
+            text = text // '"' // short_text(values(i)) // '" ' // whole_text(i - 1)
         end do
     end function tics
 

@@ -3,7 +3,7 @@
 module abstract_integrator
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_ok
+    use friction_mod, only : friction_message, friction_no_convergence, friction_ok
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
@@ -11,6 +11,11 @@ module abstract_integrator
     private
 
     public :: integrator, step_report
+
+    !> What a block does that no balance of forces holds.
+    character(len=*), parameter, public :: unstable_without_inertia = 'the slider is unstable ' &
+        // 'without inertia: friction falls faster than the spring unloads. Give it a mass to ' &
+        // 'see the jump, or a stiffer spring'
 
     integer, parameter, public :: most_shown = 20   !! residuals of a step
 
@@ -38,7 +43,7 @@ module abstract_integrator
         procedure(keep), deferred :: visit
         procedure(explain), deferred :: why_stopped
         procedure :: finished
-        procedure, non_overridable :: take_run, visit_counts, count_iterations
+        procedure, non_overridable :: take_run, visit_counts, count_iterations, explain_status
     end type integrator
 
     abstract interface
@@ -118,5 +123,18 @@ contains
         self%iterations = self%iterations + iterations
         self%most_iterations = max(self%most_iterations, iterations)
     end subroutine count_iterations
+
+    !> Why a step ends with a status: a message of the library's; without inertia no balance of
+    !> forces that could be followed; or else what the integrator says.
+    subroutine explain_status(self, status, otherwise, why)
+        class(integrator), intent(in) :: self
+        integer, intent(in) :: status
+        character(len=*), intent(in) :: otherwise
+        character(len=:), allocatable, intent(out) :: why
+
+        why = otherwise
+        if (self%system%mass <= 0.0_dp) why = unstable_without_inertia
+        if (status /= friction_no_convergence) why = trim(friction_message(status))
+    end subroutine explain_status
 
 end module abstract_integrator

@@ -8,7 +8,7 @@ module adaptive_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
-    use friction_mod, only : friction_coefficient_change, friction_facts, friction_message, &
+    use friction_mod, only : friction_coefficient_change, friction_facts, &
         friction_no_convergence, law_facts, prop_alpha_n, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status, statev_u_n
     use run_settings, only : settings
@@ -91,14 +91,8 @@ contains
         integer, intent(in) :: status
         character(len=:), allocatable, intent(out) :: why
 
-        if (status /= friction_no_convergence) then
-            why = trim(friction_message(status))
-        else if (self%system%mass <= 0.0_dp) then
-            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
-                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
-        else
-            why = 'not within the tolerance by steps as short as dt_min'
-        end if
+        call self%explain_status(status, 'not within the tolerance by steps as short as dt_min', &
+            why)
     end subroutine why_stopped
 
     !> One step from `old` to `time`, in one piece of the programme.

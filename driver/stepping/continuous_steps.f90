@@ -5,7 +5,7 @@
 !> Steps end where a phase of the contact ends, found by taking them again until they do.
 module continuous_steps
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use abstract_integrator, only : integrator, step_report
+    use abstract_integrator, only : integrator, step_report, unstable_without_inertia
     use archive_file, only : archive
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
@@ -888,8 +888,7 @@ contains
         character(len=10) :: limit
 
         if (status == friction_no_rate .and. self%system%mass <= 0.0_dp) then
-            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
-                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
+            why = unstable_without_inertia
         else if (status == friction_no_rate) then
             why = 'the contact jumps: friction falls faster than the contact spring unloads. ' &
                 // 'Take a larger alpha_t'

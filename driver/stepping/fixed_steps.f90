@@ -4,7 +4,6 @@ module fixed_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
-    use friction_mod, only : friction_message, friction_no_convergence
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
     use time_integrator, only : newmark
@@ -90,15 +89,8 @@ contains
         integer, intent(in) :: status
         character(len=:), allocatable, intent(out) :: why
 
-        if (status /= friction_no_convergence) then
-            why = trim(friction_message(status))
-        else if (self%system%mass <= 0.0_dp) then
-            why = 'the slider is unstable without inertia: friction falls faster than the spring ' &
-                // 'unloads. Give it a mass to see the jump, or a stiffer spring'
-        else
-            why = 'Newton''s method finds no balance of forces at the end of the step: take a ' &
-                // 'smaller dt, or adaptive steps (rtol)'
-        end if
+        call self%explain_status(status, 'Newton''s method finds no balance of forces at the end ' &
+            // 'of the step: take a smaller dt, or adaptive steps (rtol)', why)
     end subroutine why_stopped
 
 end module fixed_steps

@@ -19,7 +19,7 @@ contains
         real(dp), intent(in) :: loading    !! growth of the normal traction, part of it [1/T]
         real(dp), intent(in) :: cohesion   !! of the block [F/L^2]
         real(dp) :: velocity              !! [L/T]
-        real(dp) :: pressure, resting(statev_size)   ! state variables of the block at rest
+        real(dp) :: pressure, healing, resting(statev_size)   ! of the block at rest
 
         velocity = 0.0_dp
         pressure = state%normal
@@ -27,8 +27,13 @@ contains
         associate (mu => state%statev(i, statev_mu))
             resting = 0.0_dp
             resting(statev_mu) = mu
-            if (mu * pressure > 0.0_dp) velocity = state%statev(i, statev_u_et) &
-                * (friction_healing_rate(system%props_of(i), resting) + mu * loading) / (mu &
+            if (.not. mu * pressure > 0.0_dp) return
+            if (allocated(system%constants)) then
+                healing = friction_healing_rate(system%constants(i, :), resting)
+            else
+                healing = friction_healing_rate(system%props, resting)
+            end if
+            velocity = state%statev(i, statev_u_et) * (healing + mu * loading) / (mu &
                 + cohesion / pressure)
         end associate
     end function sticking_velocity

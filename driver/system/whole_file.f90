@@ -3,6 +3,7 @@
 module whole_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_ptr, c_size_t
     use c_library, only : c_fclose, c_ferror, c_fopen, c_fread
+    use number_text, only : whole_text
     use platform, only : is_directory
     implicit none
     private
@@ -92,7 +93,6 @@ contains
         character(len=*), intent(in) :: bytes
         character(len=:), allocatable, intent(out) :: text
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
-        character(len=12) :: place
         character(len=1) :: this, previous
         integer :: line, n, i
 
@@ -117,8 +117,7 @@ contains
         do i = 1, len(text)
             this = text(i:i)
             if (this == achar(0)) then
-                write (place, '(i0)') line
-                problem = 'line ' // trim(place) // ': holds a character 0, which no text does'
+                problem = 'line ' // whole_text(line) // ': holds a character 0, which no text does'
                 exit
             end if
             if (this /= line_feed .or. previous /= carriage_return) then

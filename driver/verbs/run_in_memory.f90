@@ -77,18 +77,13 @@ contains
         type(c_ptr), value, intent(in) :: context
         type(c_ptr), value, intent(in) :: result       !! place of a pointer
         integer(c_int) :: status
-        type(c_ptr), pointer :: place
         type(run_result), pointer :: this
         type(caller_watch) :: caller
         procedure(watch_function), pointer :: watch_
 
         status = friction_null_pointer
-        if (.not. c_associated(result)) return
-        call c_f_pointer(result, place)
-        place = c_null_ptr
-        if (.not. (c_associated(name) .and. c_associated(text))) return
-        allocate (this)
-        place = c_loc(this)
+        call make_result(name, text, result, this)
+        if (.not. associated(this)) return
         if (c_associated(watch)) then
             call c_f_procpointer(watch, watch_)
             caller%watch => watch_
@@ -96,6 +91,22 @@ contains
         caller%context = context
         call run_text(fortran_text(name), fortran_text(text), caller, this, status)
     end function c_run
+
+    !> An empty result in the place that a caller has for it; none if a pointer is missing.
+    subroutine make_result(name, text, result, this)
+        type(c_ptr), intent(in) :: name, text   !! C texts
+        type(c_ptr), intent(in) :: result       !! place of a pointer
+        type(run_result), pointer, intent(out) :: this
+        type(c_ptr), pointer :: place
+
+        nullify (this)
+        if (.not. c_associated(result)) return
+        call c_f_pointer(result, place)
+        place = c_null_ptr
+        if (.not. (c_associated(name) .and. c_associated(text))) return
+        allocate (this)
+        place = c_loc(this)
+    end subroutine make_result
 
     !> Reads, validates, simulates.
     subroutine run_text(name, text, caller, this, status)
@@ -149,16 +160,11 @@ contains
         type(c_ptr), value, intent(in) :: name, text   !! C texts
         type(c_ptr), value, intent(in) :: result       !! place of a pointer
         integer(c_int) :: status
-        type(c_ptr), pointer :: place
         type(run_result), pointer :: this
 
         status = friction_null_pointer
-        if (.not. c_associated(result)) return
-        call c_f_pointer(result, place)
-        place = c_null_ptr
-        if (.not. (c_associated(name) .and. c_associated(text))) return
-        allocate (this)
-        place = c_loc(this)
+        call make_result(name, text, result, this)
+        if (.not. associated(this)) return
         call stability_of_text(fortran_text(name), fortran_text(text), this, status)
     end function c_stability
 

@@ -6,6 +6,7 @@ module sweep
     use command_line, only : command
     use friction_mod, only : friction_version
     use namelist_input, only : namelist_file
+    use number_text, only : whole_text
     use platform, only : cores, make_directory, rename_file, report
     use progress_bar, only : progress
     use run_observer, only : observer_slot
@@ -110,10 +111,8 @@ contains
         character(len=*), intent(in) :: base
         integer, intent(in) :: part
         character(len=:), allocatable :: name
-        character(len=12) :: number
 
-        write (number, '(i0)') part
-        name = base // '_part_' // trim(number) // '.journal'
+        name = base // '_part_' // whole_text(part) // '.journal'
     end function part_journal
 
     !> Where the rows are when all is done.
