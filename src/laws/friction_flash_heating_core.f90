@@ -141,8 +141,6 @@ contains
         bounds%growth_high = max(min(near_high, high), first%growth, last%growth)
         from = first%rise / this%b - first%ln_v
         to = last%rise / this%b - last%ln_v
-        bounds%ln_low = min(from, to)
-        bounds%ln_high = max(from, to)
         low = (bounds%growth_low - 1.0_wp) / this%b
         high = (bounds%growth_high - 1.0_wp) / this%b
         ! Straight lines from both ends meet below and above.
@@ -151,10 +149,8 @@ contains
         share = max(high - low, tiny(width))
         at_least = from + low * max(0.0_wp, min((high * width - gained) / share, width))
         at_most = from + high * max(0.0_wp, min((gained - low * width) / share, width))
-        if (low < 0.0_wp .and. high > 0.0_wp) then
-            bounds%ln_low = max(min(at_least, bounds%ln_low), min(to, -last%ln_v))
-            bounds%ln_high = max(at_most, bounds%ln_high)
-        end if
+        bounds%ln_low = max(min(at_least, from, to), min(to, -last%ln_v))
+        bounds%ln_high = max(at_most, from, to)
     end function bounds_between
 
     elemental subroutine growth_between(this, first, last, least, most)
@@ -174,7 +170,7 @@ contains
         coth_low = (2.0_wp - part) / part   ! of the lower y: the larger one
         part = decayed_part(y_high, exp(-y_high))
         coth_high = (2.0_wp - part) / part
-        share_low = min(tanh(low) * coth_high * last%g, 1.0_wp)
+        share_low = tanh(low) * coth_high * last%g
         share_high = min(tanh(high) * coth_low * first%g, 1.0_wp)
         least = (1.0_wp - this%b) * merge(share_low, share_high, this%b <= 1.0_wp)
         most = (1.0_wp - this%b) * merge(share_high, share_low, this%b <= 1.0_wp)
@@ -184,18 +180,15 @@ contains
         pull = this%f_w - low
         most = most + pull * merge(coth_low * (first%g * last%h), coth_high * (last%g &
             * first%h), pull > 0.0_wp)
-        if (y_low <= least_ratio) then   ! it is at its end, and the growth none
-            least = min(least, 0.0_wp)
-            most = max(most, 0.0_wp)
-        end if
-        if (y_high <= least_ratio) then
+        if (y_high <= least_ratio) then   ! it is at its end, and the growth none
             least = 0.0_wp
             most = 0.0_wp
         end if
     end subroutine growth_between
 
-    !> G C is between 0 and 1; G h (y_LV - w) is largest at v_w, or at the end; coth(y) is below
-    !> 1 + 1/y.
+    !> G C is between 0 and 1, and coth(y) below 1 + 1/y. At e^-d times v_w, or times the larger
+    !> rate if that is less, y_LV is at most (b - 1) d more than there, and h, but for a factor of
+    !> two, e^(-n d) of that there: d e^(-n d) is below 1/(e n).
     elemental subroutine growth_below(this, first, last, least, most)
         type(heating), intent(in) :: this
         type(steady_sliding), intent(in) :: first, last
@@ -205,10 +198,9 @@ contains
         beyond = min(this%ln_v_w, last%ln_v) - this%ln_v0
         heated = min(1.0_wp, 2.0_wp * last%h)
         highest = max(asinh_exp(beyond - ln_2 + (this%f0 - this%b * beyond)), last%low) - this%f_w
-        highest = max(0.0_wp, highest + max(0.0_wp, this%b - 1.0_wp))
+        highest = max(0.0_wp, highest) + max(0.0_wp, this%b - 1.0_wp) * exp(-1.0_wp) / this%n
         least = min(1.0_wp - this%b, 0.0_wp) - heated * (highest + 1.0_wp)
-        most = max(1.0_wp - this%b, 0.0_wp)
-        if (min(first%low, last%low) < this%f_w) most = most + this%f_w * heated + this%n
+        most = max(1.0_wp - this%b, 0.0_wp) + this%f_w * heated + this%n
     end subroutine growth_below
 
 end module friction_flash_heating_core
