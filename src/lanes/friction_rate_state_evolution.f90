@@ -7,8 +7,8 @@ module friction_rate_state_evolution
         steady_bounds, steady_sliding
     use friction_lane_block, only : c_own, lane_ageing, lane_flash_heating, lane_pressed_ageing, &
         lane_pressed_slip_law, lanes, n_constants, slide_block
-    use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
-        may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
+    use friction_rate_state_bounds, only : aged_bounds, aged_fall, joined, may_turn, &
+        may_turn_far, may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
     use friction_rate_state_core, only : aged_slope, aged_state, mean_decay, mean_growth, &
         pressed_by, slipped_slope
     implicit none
@@ -427,14 +427,5 @@ contains
         constants = heating(now%ln_v0(i), now%ln_v_w(i), now%f0(i), now%b_over_a(i), now%f_w(i), &
             now%n(i))
     end function heating_at
-
-    !> From the start of one range to the end of another.
-    pure function joined(first, last) result(range)
-        type(slip_range), intent(in) :: first, last
-        type(slip_range) :: range
-
-        range = slip_range(first%from, last%to, first%ln_from, last%ln_to, first%left_from, &
-            last%left_to, first%mean_from, last%mean_to, first%fall_from, last%fall_to)
-    end function joined
 
 end module friction_rate_state_evolution

@@ -12,8 +12,8 @@ module friction_rate_state_bounds
     implicit none
     private
 
-    public :: aged_bounds, aged_fall, may_turn, may_turn_far, may_vanish, pressed_range, ranges, &
-        slip_range, slipped_bounds, slipped_fall
+    public :: aged_bounds, aged_fall, joined, may_turn, may_turn_far, may_vanish, pressed_range, &
+        ranges, slip_range, slipped_bounds, slipped_fall
 
     !> From one x to another.
     type :: slip_range
@@ -42,6 +42,15 @@ module friction_rate_state_bounds
         exp(-ends(k + 1)), means(k), means(k + 1), falls(k), falls(k + 1)), k = 1, n_ranges - 1)]
 
 contains
+
+    !> From the start of one range to the end of another.
+    elemental function joined(first, last) result(range)
+        type(slip_range), intent(in) :: first, last
+        type(slip_range) :: range
+
+        range = slip_range(first%from, last%to, first%ln_from, last%ln_to, first%left_from, &
+            last%left_to, first%mean_from, last%mean_to, first%fall_from, last%fall_to)
+    end function joined
 
     !> For the ageing law where the pressure takes `pressed` from ln(theta) in the increment (Linker
     !> and Dieterich): as a slip does, but the spring stays where it is.

@@ -21,8 +21,8 @@ module friction_rate_state_law
         load_rates, named_law, onset_gradual, sliding, unbounded
     use friction_law_constants, only : complete_constants, constant_table, law_constant, &
         no_constants, positive
-    use friction_rate_state_bounds, only : aged_bounds, aged_fall, may_turn, may_turn_far, &
-        may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
+    use friction_rate_state_bounds, only : aged_bounds, aged_fall, joined, may_turn, &
+        may_turn_far, may_vanish, pressed_range, ranges, slip_range, slipped_bounds, slipped_fall
     use friction_rate_state_core, only : aged_slope, aged_state, ageing_rate, asinh_exp, &
         fall_of_mean, mean_decay, mean_growth, pressed_by, slip_law_rate, slipped_slope, &
         slope_asinh_exp, &
@@ -88,6 +88,15 @@ module friction_rate_state_law
     integer, parameter, public :: n_constants = size(rate_state_constants)
     integer, parameter, public :: n_needed = 5   !! of them, those that extensions start with, too;
                                                  !! the others have defaults
+
+    !> Two slips in an increment, and what the slip law knows of those between them.
+    type :: slips_between
+        real(wp) :: slip(2)     !! from, to, > 0 [L]
+        real(wp) :: dt          !! > 0 [T]
+        real(wp) :: theta_n     !! at the start of the increment, > 0 [T]
+        real(wp) :: pull(2)     !! ln(theta) of steady sliding less ln(theta_n): most, least
+        real(wp) :: growth(2)   !! see `steady_bounds`
+    end type slips_between
 
     type(internal_variable), parameter, public :: state_variable = &
         internal_variable('theta', 'T', exists=.true.)
@@ -387,6 +396,7 @@ contains
         real(wp), intent(in) :: pressure, dt
         type(law_state), intent(in) :: old
         real(wp), intent(out) :: least, most
+        type(slips_between) :: between
         real(wp) :: from, y_first, e_low, e_high, grown, shrunk, high, low, s_high, s_low, growth(2)
 
         from = max(first%slip, least_slip * self%d_c)
@@ -397,7 +407,8 @@ contains
             most = max(first%d_slip, last%d_slip)
             return
         end if
-        call evolution_bounds(self, [from, last%slip], pressure, dt, old%r, e_low, e_high)
+        between = between_slips(self, from, last%slip, dt, old%r)
+        call evolution_bounds(self, between, pressure, e_low, e_high)
         ! ln(theta) above its last value, and below its first one
         grown = max(0.0_wp, e_high * ((last%slip - from) / self%d_c))
         shrunk = max(0.0_wp, log(first%state%r) - log(last%state%r))
@@ -407,7 +418,7 @@ contains
         low = self%a / last%slip - (self%b / self%d_c) * e_high
         high = self%a / from - (self%b / self%d_c) * e_low
         if (self%evolution == shifted) then
-            growth = exponent_growth(self, [from, last%slip], dt, old%r)
+            growth = exponent_growth(self, between)
             grown = min(grown, max(0.0_wp, -growth(1)) * log(last%slip / from))
             shrunk = min(shrunk, max(0.0_wp, -growth(1)) * log(last%slip / from))
             low = max(low, self%a * growth(1) / merge(last%slip, from, growth(1) > 0.0_wp))
@@ -429,27 +440,25 @@ contains
     !>
     !> which stay close where the terms of `evolution_bounds` are large and cancel: far along, where
     !> only `growth` is left, and for b far above a.
-    pure function exponent_growth(self, slip, dt, theta_n) result(bounds)
+    pure function exponent_growth(self, between) result(bounds)
         class(rate_state_law), intent(in) :: self
-        real(wp), intent(in) :: slip(2)       !! between which slips, > 0 [L]
-        real(wp), intent(in) :: dt            !! > 0 [T]
-        real(wp), intent(in) :: theta_n       !! at the start of the increment, > 0 [T]
+        type(slips_between), intent(in) :: between
         real(wp) :: bounds(2)                 !! least, most
-        real(wp) :: x(2), left(2), slipped(2), weight(2), ln_theta(2), growth(2), pull(2)
+        real(wp) :: x(2), left(2), slipped(2), weight(2)
 
-        x = slip / self%d_c
+        x = between%slip / self%d_c
         left = exp(-x)
         slipped = x * mean_decay(x, left)
         weight = x * left   ! it has one peak, at 1
         weight = [minval(weight), maxval(weight)]
         if (x(1) < 1.0_wp .and. x(2) > 1.0_wp) weight(2) = exp(-1.0_wp)
         weight = self%b / self%a * weight
-        call self%steady_bounds(log(slip) - log(dt), ln_theta, growth)
-        pull = ln_theta + log(self%d_c) - log(theta_n)
-        bounds(1) = minval(left + slipped * growth(1)) + pull(1) * merge(weight(1), weight(2), &
-            pull(1) > 0.0_wp)
-        bounds(2) = maxval(left + slipped * growth(2)) + pull(2) * merge(weight(2), weight(1), &
-            pull(2) > 0.0_wp)
+        associate (growth => between%growth, most => between%pull(1), least => between%pull(2))
+            bounds(1) = minval(left + slipped * growth(1)) + least * merge(weight(1), weight(2), &
+                least > 0.0_wp)
+            bounds(2) = maxval(left + slipped * growth(2)) + most * merge(weight(2), weight(1), &
+                most > 0.0_wp)
+        end associate
     end function exponent_growth
 
     !> The derivative of asinh(e^X), where that is y, after X has changed.
@@ -472,41 +481,38 @@ contains
     !>
     !>     ageing law:  e = (theta_n e^-x + dt fall)/theta,  fall = -d/dx (1 - e^-x)/x
     !>     slip law:    e = (1 - e^-x)/x - e^-x pull,        pull = ln(dt/x) - ln(theta_n)
-    pure subroutine evolution_bounds(self, slip, pressure, dt, theta_n, e_low, e_high)
+    pure subroutine evolution_bounds(self, between, pressure, e_low, e_high)
         class(rate_state_law), intent(in) :: self
-        real(wp), intent(in) :: slip(2)        !! between which slips, > 0 [L]
+        type(slips_between), intent(in) :: between
         real(wp), intent(in) :: pressure       !! > 0 [F/L^2]
-        real(wp), intent(in) :: dt             !! > 0 [T]
-        real(wp), intent(in) :: theta_n        !! at the start of the increment, > 0 [T]
         real(wp), intent(out) :: e_low, e_high !! [-]
-        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), pull(2), growth(2), by_ln_v(2), z
+        real(wp) :: x(2), left(2), mean(2), fall(2), theta(2), by_ln_v(2), z
 
         z = 0.0_wp
         if (self%alpha > 0.0_wp) z = pressing(self, pressure)
-        x = slip / self%d_c
+        x = between%slip / self%d_c
         if (self%evolution == ageing) then
             x = x + z
             left = exp(-x)
             call mean_growth(x, left, mean, fall)
-            theta = max(theta_n * left + dt * mean, tiny(dt))
-            fall = theta_n * left + dt * fall
+            theta = max(between%theta_n * left + between%dt * mean, tiny(z))
+            fall = between%theta_n * left + between%dt * fall
             e_low = fall(2) / theta(1)
             e_high = min(1.0_wp, fall(1) / theta(2))
         else
             left = exp(-x)
             mean = mean_decay(x, left)
-            pull = log(dt) - log(x) - log(theta_n)
             e_low = mean(2)
             e_high = mean(1)
             if (self%evolution == shifted) then
-                call self%steady_bounds(log(slip) - log(dt), pull, growth)
-                pull = pull([2, 1]) + log(self%d_c) - log(theta_n)
-                by_ln_v = self%a / self%b * (growth - 1.0_wp)
+                by_ln_v = self%a / self%b * (between%growth - 1.0_wp)
                 e_low = -by_ln_v(2) * merge(mean(2), mean(1), by_ln_v(2) < 0.0_wp)
                 e_high = -by_ln_v(1) * merge(mean(1), mean(2), by_ln_v(1) < 0.0_wp)
             end if
-            e_low = e_low - pull(1) * merge(left(1), left(2), pull(1) > 0.0_wp)
-            e_high = e_high - pull(2) * merge(left(2), left(1), pull(2) > 0.0_wp)
+            associate (most => between%pull(1), least => between%pull(2))
+                e_low = e_low - most * merge(left(1), left(2), most > 0.0_wp)
+                e_high = e_high - least * merge(left(2), left(1), least > 0.0_wp)
+            end associate
             if (abs(z) > 0.0_wp) then
                 fall = z * fall_of_mean(x, left, mean)
                 e_low = e_low - maxval(fall)
@@ -514,6 +520,23 @@ contains
             end if
         end if
     end subroutine evolution_bounds
+
+    pure function between_slips(self, from, to, dt, theta_n) result(between)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: from, to, dt, theta_n   !! as there
+        type(slips_between) :: between
+
+        between%slip = [from, to]
+        between%dt = dt
+        between%theta_n = theta_n
+        between%growth = 0.0_wp
+        between%pull = 0.0_wp
+        if (self%evolution == ageing) return
+        between%pull = log(dt) - log(between%slip / self%d_c) - log(theta_n)
+        if (self%evolution /= shifted) return
+        call self%steady_bounds(log(between%slip) - log(dt), between%pull, between%growth)
+        between%pull = between%pull([2, 1]) + log(self%d_c) - log(theta_n)
+    end function between_slips
 
     !> Newton's method in ln(slip), bracketed, where there can be one equilibrium only.
     pure subroutine solve(self, trial, stiffness, pressure, dt, old, answer, solved)
@@ -594,10 +617,10 @@ contains
         real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall, ln_ratio
         integer :: i
 
-        call evolution_bounds(self, [least_slip * self%d_c, trial / stiffness], pressure, dt, &
-            theta_n, e_low, e_high)
+        call evolution_bounds(self, between_slips(self, least_slip * self%d_c, trial / stiffness, &
+            dt, theta_n), pressure, e_low, e_high)
         may = pressure * (self%b * e_high / self%d_c - self%a * (stiffness / trial)) > stiffness
-        if (.not. may .or. self%evolution == shifted) return
+        if (.not. may) return
         if (self%a * pressure < least_share * max(trial, stiffness * self%d_c)) return
         t = trial / (self%a * pressure)
         k = stiffness * self%d_c / (self%a * pressure)
@@ -605,6 +628,10 @@ contains
         pressed = 0.0_wp
         if (self%alpha > 0.0_wp) pressed = pressing(self, pressure)
         ln_ratio = log(dt) - log(theta_n)
+        if (self%evolution == shifted) then
+            may = may_turn_anywhere(self, t, k, dt, theta_n)
+            return
+        end if
         x_0 = direct_exponent(self, self%d_c, dt, log(merge(dt, theta_n, self%evolution == ageing)))
         do i = 1, size(ranges)
             if (k * ranges(i)%from > t) exit
@@ -628,6 +655,45 @@ contains
         may = k * ranges(size(ranges))%to < t .and. may_turn_far(k, b_over_a, theta_n / dt, &
             pressed) > 0.0_wp
     end function may_balance_more_than_once
+
+    !> The same with a steady state of its own, whose bounds cost more: over wide ranges, and over
+    !> narrow ones where these do not tell.
+    pure function may_turn_anywhere(self, t, k, dt, theta_n) result(may)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: t, k        !! of module friction_rate_state_bounds
+        real(wp), intent(in) :: dt, theta_n
+        logical :: may
+        type(slip_range) :: range
+        real(wp) :: pull(2), growth(2), low, high, fall, x_0, b_over_a
+        integer :: first, last, n, many
+
+        n = count(k * ranges%from <= t)
+        may = k * ranges(n)%to < t   ! further than the ranges
+        if (may) return
+        b_over_a = self%b / self%a
+        x_0 = direct_exponent(self, self%d_c, dt, log(theta_n))
+        first = 1
+        many = n / 4
+        do
+            last = min(first + max(many, 1) - 1, n)
+            range = joined(ranges(first), ranges(last))
+            call self%steady_bounds([range%ln_from, range%ln_to] + log(self%d_c) - log(dt), pull, &
+                growth)
+            pull = pull + log(self%d_c) - log(theta_n)
+            fall = slipped_fall(range, pull(1), (growth(1) - 1.0_wp) / b_over_a, 0.0_wp)
+            call slipped_bounds(range, pull(1), pull(2), 0.0_wp, low, high)
+            may = min(may_turn(range, k, b_over_a * fall), may_vanish(range, t, k, x_0 + b_over_a &
+                * low, x_0 + b_over_a * high)) > 0.0_wp
+            if (may .and. last == first) return
+            if (may) then
+                many = (last - first + 1) / 4
+            else
+                if (last == n) return
+                first = last + 1
+                many = 2 * max(many, 1)
+            end if
+        end do
+    end function may_turn_anywhere
 
     !> The stiffer of the two, spring or law, knows the traction better.
     pure subroutine settle(self, misfit, stiffness, pressure, answer)
