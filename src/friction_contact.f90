@@ -154,12 +154,10 @@ contains
         type(contact_point), intent(in) :: old    !! with a gap
         type(contact_point), intent(in) :: new    !! closed
         real(wp) :: share                         !! 0 to 1 [-]
-        logical :: touched   ! from the start
 
         share = 1.0_wp
         if (motion%pressure_given) return
-        touched = .not. (old%u_n > motion%blur .and. motion%du(1) < 0.0_wp)
-        if (cohesion > 0.0_wp .and. touched) return
+        if (cohesion > 0.0_wp .and. .not. old%u_n > motion%blur) return   ! touches from the start
         share = min(new%u_n, 0.0_wp) / motion%du(1)
     end function share_after_touchdown
 

@@ -269,7 +269,6 @@ contains
         call friction_check(props, place, text, status)
         if (status < 0) return
         call choose_own_law(size(props), props, storage, own, place, status)
-        if (status < 0) return
         known%law = friction_law_of(props)
         known%alpha_n = props(prop_alpha_n)
         known%alpha_t = props(prop_alpha_t)

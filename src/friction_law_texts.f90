@@ -195,7 +195,8 @@ contains
         end do
     end subroutine put_word
 
-    !> The same of a number that is written with few digits, as bounds are.
+    !> The same of a number that is written with few digits, as bounds are: whole, or with three
+    !> decimals.
     pure subroutine put_number(line, x)
         type(text_line), intent(inout) :: line
         real(wp), intent(in) :: x   !! 0 to 999999, a multiple of 0.001
@@ -210,7 +211,6 @@ contains
                 if (mod(thousandths, 1000) == 0) exit
                 call put(line, '.')
             end if
-            if (power < 1000 .and. mod(thousandths, 10 * power) == 0) exit
             begun = begun .or. power <= 1000 .or. thousandths / power > 0
             if (begun) call put(line, achar(iachar('0') + mod(thousandths / power, 10)))
             power = power / 10
