@@ -364,7 +364,7 @@ contains
         class(subloading_law), intent(in) :: self
         type(slide_start), intent(in) :: start
         real(wp), intent(out) :: s, r, e    !! slip [L], R and 1 - R
-        logical, intent(out) :: good        !! R changes so little that the expansion holds
+        logical, intent(out) :: good        !! R and w change so little that the expansion holds
         real(wp), parameter :: little = 0.2_wp, least_ratio = 1.0e-3_wp
         real(wp) :: r_n, full, fall, rate, d, dr, bend_s, bend_r
 
@@ -386,7 +386,7 @@ contains
         bend_s = (fall * s * (dr - self%kappa * start%healing * r_n * s) + full * bend_r) * d
         bend_r = rate * bend_s - bend_r
         good = dr <= little * min(r, e) .and. self%m * s <= little * r_n .and. abs(bend_r) &
-            <= little * dr
+            <= little * dr .and. abs(bend_s) <= 0.5_wp * s
         s = s + bend_s
         r = r + (dr + bend_r)
         e = e - (dr + bend_r)
