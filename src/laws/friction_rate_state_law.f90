@@ -498,7 +498,7 @@ contains
             theta = max(between%theta_n * left + between%dt * mean, tiny(z))
             fall = between%theta_n * left + between%dt * fall
             e_low = fall(2) / theta(1)
-            e_high = min(1.0_wp, fall(1) / theta(2))
+            e_high = fall(1) / max(fall(1), theta(2))   ! no more than 1
         else
             left = exp(-x)
             mean = mean_decay(x, left)
