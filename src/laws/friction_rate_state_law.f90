@@ -252,17 +252,25 @@ contains
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: pressure   !! at the end of the increment [F/L^2]
         real(wp) :: fall
-        real(wp), parameter :: wide = 1.0e100_wp
 
         fall = 0.0_wp
-        if (.not. pressed_throughout(self, pressure)) return
-        if (pressure < wide * self%pressure_start .and. self%pressure_start < wide * pressure) then
-            fall = pressed_by(self%alpha / self%b, self%pressure_start, pressure)
+        if (pressed_throughout(self, pressure)) fall = pressing_between(self, self%pressure_start, &
+            pressure)
+    end function pressing
+
+    pure function pressing_between(self, before, after) result(fall)
+        class(rate_state_law), intent(in) :: self
+        real(wp), intent(in) :: before, after   !! pressures, > 0 [F/L^2]
+        real(wp) :: fall
+        real(wp), parameter :: wide = 1.0e100_wp
+
+        if (after < wide * before .and. before < wide * after) then
+            fall = pressed_by(self%alpha / self%b, before, after)
         else   ! the quotient may be out of range
-            fall = self%alpha / self%b * (log(pressure) - log(self%pressure_start))
+            fall = self%alpha / self%b * (log(after) - log(before))
         end if
         fall = max(-most_pressing, min(fall, most_pressing))
-    end function pressing
+    end function pressing_between
 
     !> Does that depend on the pressure at the end?
     pure function presses(self, pressure)
@@ -291,7 +299,8 @@ contains
         type(law_state) :: new
 
         new = state
-        if (self%alpha > 0.0_wp) new%r = state%r * (before / after)**(self%alpha / self%b)
+        if (self%alpha > 0.0_wp) new%r = min(max(state%r * exp(-pressing_between(self, before, &
+            after)), tiny(before)), largest)
     end function pressed
 
     !> theta after a slip, and how it depends on that.
@@ -401,10 +410,9 @@ contains
 
         from = max(first%slip, least_slip * self%d_c)
         y_first = first%state%mu / self%a
-        if (first%slip < from) y_first = first%d_slip * (from / (pressure * self%a))
-        if (last%slip <= from) then   ! both in the part that is a straight line
-            least = min(first%d_slip, last%d_slip)
-            most = max(first%d_slip, last%d_slip)
+        if (last%slip < from) then   ! both in the part that is a straight line
+            least = last%d_slip
+            most = last%d_slip
             return
         end if
         between = between_slips(self, from, last%slip, dt, old%r)
@@ -469,13 +477,20 @@ contains
         real(wp), parameter :: far = 600.0_wp
 
         slope = 0.0_wp
-        if (y > 1.0_wp) then
-            slope = slope_asinh_exp(min(max(y - ln_2 + log(1.0_wp - exp(-2.0_wp * y)) + change, &
-                -far), far))
-        else if (y > 0.0_wp) then
-            slope = slope_asinh_exp(min(max(log(sinh(y)) + change, -far), far))
-        end if
+        if (y > 0.0_wp) slope = slope_asinh_exp(min(max(ln_sinh(y) + change, -far), far))
     end function slope_of_asinh
+
+    !> ln(sinh(y)), however large y is.
+    pure function ln_sinh(y)
+        real(wp), intent(in) :: y   !! > 0
+        real(wp) :: ln_sinh
+
+        if (y < 1.0_wp) then
+            ln_sinh = log(sinh(y))
+        else
+            ln_sinh = y - ln_2 + log(1.0_wp - exp(-2.0_wp * y))
+        end if
+    end function ln_sinh
 
     !> Bounds of e = -d(ln theta)/dx between two slips.
     !>
@@ -556,7 +571,8 @@ contains
         if (may_balance_more_than_once(self, trial, stiffness, pressure, dt, old%r)) return
 
         small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
-        answer%slip = max(low, creep(self, trial, pressure, dt, old%r, high))
+        call self%rest(0.0_wp, pressure, dt, old, answer%state, answer%resistance)
+        answer%slip = max(low, creep(self, trial, pressure, dt, answer%state%r, high))
         do iteration = 1, max_iterations
             call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
                 answer%d_slip, answer%d_pressure)
@@ -727,28 +743,21 @@ contains
     end function scale_of_terms
 
     !> The slip under a traction if the state does not evolve by slip.
-    pure function creep(self, traction, pressure, dt, theta_n, most) result(slip)
+    pure function creep(self, traction, pressure, dt, theta, most) result(slip)
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: traction   !! > 0 [F/L^2]
         real(wp), intent(in) :: pressure   !! > 0 [F/L^2]
         real(wp), intent(in) :: dt         !! > 0 [T]
-        real(wp), intent(in) :: theta_n    !! at the start of the increment, > 0 [T]
+        real(wp), intent(in) :: theta      !! at the end of the increment, > 0 [T]
         real(wp), intent(in) :: most       !! slip that is enough [L]
         real(wp) :: slip                   !! [L]
         real(wp), parameter :: fast = 1.0e6_wp
-        real(wp) :: y, theta
+        real(wp) :: y
 
-        theta = theta_n
-        if (self%evolution == ageing) theta = theta_n + dt
         slip = most
         if (traction > fast * self%a * pressure) return
         y = traction / (self%a * pressure)
-        if (y < 1.0_wp) then
-            y = log(sinh(y))
-        else
-            y = y - ln_2 + log(1.0_wp - exp(-2.0_wp * y))
-        end if
-        slip = exp(min(y - direct_exponent(self, 1.0_wp, dt, log(theta)), log(most)))
+        slip = exp(min(ln_sinh(y) - direct_exponent(self, 1.0_wp, dt, log(theta)), log(most)))
     end function creep
 
     !> The slip rate that the traction asks for, 2 v0 sinh(tau/(a p)) exp(-(f0 + b ln(v0
@@ -766,13 +775,9 @@ contains
         rate = 0.0_wp
         if (.not. load%pressure > 0.0_wp) return
         psi = state_exponent(self%a, self%b, self%f0, log(self%v0 * state%r / self%d_c))
-        x = min(load%traction, self%a * load%pressure * (psi + ln_most)) &
+        x = min(load%traction, self%a * load%pressure * (max(psi, 0.0_wp) + ln_most)) &
             / (self%a * load%pressure)
-        if (x > 1.0_wp) then
-            rate = self%v0 * (exp(x - psi) - exp(-x - psi))
-        else
-            rate = 2.0_wp * self%v0 * sinh(x) * exp(min(-psi, ln_most))
-        end if
+        if (x > 0.0_wp) rate = 2.0_wp * self%v0 * exp(min(ln_sinh(x) - psi, ln_most))
     end subroutine slip_rate
 
     pure function state_rates(self, state, load, slip_rate) result(rates)
