@@ -369,7 +369,7 @@ contains
         real(wp), intent(in) :: longest, t(lanes), k(lanes)
         integer, intent(in) :: n
         type(evolution), intent(inout) :: now
-        integer, parameter :: many = 4   !! ranges in a wide one
+        integer, parameter :: many = 3   !! ranges in a wide one
         type(steady_sliding), dimension(lanes) :: from, at
         real(wp) :: may(lanes)
         integer :: i, j, m
