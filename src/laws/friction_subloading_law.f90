@@ -309,7 +309,7 @@ contains
 
         ! The last step, too small to need another logarithm.
         z = dr * ir
-        log_r = log_r + z * (1.0_wp - z * (0.5_wp - z / 3.0_wp))
+        log_r = log_r + z * (1.0_wp - z * (0.5_wp - z * (1.0_wp / 3.0_wp)))
         call conclude(self, c, w0, pressure, s + ds, r + dr, log_r, answer)
     end subroutine solve
 
@@ -345,9 +345,10 @@ contains
         real(wp), intent(in) :: s          !! slip [L]
         real(wp), intent(in) :: r, log_r   !! R and its logarithm
         type(sliding), intent(out) :: answer
-        real(wp) :: iw, mu, full
+        real(wp) :: iw, mu, full, rate
 
         iw = 1.0_wp / (w0 + self%kappa * s)
+        rate = self%m * log_r / (r + self%m * s)   ! divides meanwhile
         mu = self%mu_k + c * iw
         answer%slip = s
         answer%state%mu = min(max(mu, self%mu_k), self%mu_s)
@@ -355,8 +356,7 @@ contains
         answer%d_pressure = r * mu
         full = pressure * mu + self%cohesion
         answer%resistance = r * full
-        answer%d_slip = -r * (full * self%m * log_r / (r + self%m * s) + pressure * self%kappa * c &
-            * iw**2)
+        answer%d_slip = -r * (full * rate + pressure * self%kappa * c * iw**2)
     end subroutine conclude
 
     !> A start for little slip: two terms of the expansion of (s, R) in the excess traction.
@@ -399,22 +399,24 @@ contains
         class(subloading_law), intent(in) :: self
         type(slide_start), intent(in) :: start
         real(wp), intent(out) :: s, r, e     !! slip [L], R and 1 - R
-        real(wp) :: r_n, e_n, z, rate, b, root, shrink
+        real(wp) :: r_n, e_n, z, rate, b, root, above, below, shrink
 
         r_n = start%r
         e_n = 1.0_wp - r_n
-        z = e_n / (1.0_wp + r_n)
-        rate = self%m * (1.0_wp + z) * (1.0_wp + z**2 / (3.0_wp - 1.8_wp * z**2))
+        z = 3.0_wp * (1.0_wp + r_n)**2 - 1.8_wp * e_n**2
+        rate = (2.0_wp * self%m) * (z + e_n**2) / ((1.0_wp + r_n) * z)
         b = 0.5_wp * (start%stiffness + rate * (e_n * start%full - start%excess))
         root = sqrt(b**2 + start%stiffness * rate * start%excess)
+        above = root - b
+        below = start%stiffness * rate
         if (b > 0.0_wp) then
-            s = start%excess / (b + root)
-        else
-            s = (root - b) / (start%stiffness * rate)
+            above = start%excess
+            below = b + root
         end if
-        shrink = 1.0_wp / (1.0_wp + rate * s)
-        r = (r_n + rate * s) * shrink
-        e = e_n * shrink
+        s = above / below
+        shrink = 1.0_wp / (below + rate * above)
+        r = (r_n * below + rate * above) * shrink
+        e = e_n * below * shrink
         call pair(r, e)
     end subroutine start_far
 
