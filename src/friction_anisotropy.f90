@@ -72,7 +72,6 @@ module friction_anisotropy
     !>
     !> where r_i >= 1 is that rate, over the slower one's. T_eq is convex in the slip.
     type, extends(unloading) :: ellipse_spring
-        real(wp) :: alpha_t      !! tangential stiffness [F/L^3]
         real(wp) :: q(2)         !! trial elastic displacement [L]
         real(wp) :: squeeze      !! [-]
         real(wp) :: rates(2)     !! r_i [-]
@@ -132,17 +131,14 @@ contains
         real(wp), intent(in) :: q(2)            !! trial elastic displacement [L]
         real(wp), intent(in) :: distance        !! its equivalent length [L]
         type(ellipse_spring) :: spring
-        type(relaxation) :: now
 
         spring%trial = alpha_t * distance
         spring%x_end = 1.0_wp
-        spring%alpha_t = alpha_t
+        spring%stiffness = alpha_t
         spring%q = q
         spring%squeeze = squeeze
         spring%rates(1) = max(1.0_wp, 1.0_wp / squeeze**2)
         spring%rates(2) = max(squeeze**2, 1.0_wp)
-        now = relaxed(spring, 0.0_wp)
-        spring%stiffness = alpha_t * now%reach
     end function associated_spring
 
     !> Where it slides at x. The law's traction is exact, the spring's a difference.
@@ -159,7 +155,7 @@ contains
         way%response = now%e * now%along / now%mean
         way%across = (resistance / now%equivalent) * now%e(1) * now%e(2) / now%mean
         way%cross_stiffness = 0.0_wp
-        way%stiffness = spring%alpha_t * now%reach
+        way%stiffness = spring%stiffness * now%reach
         way%work_ratio = 1.0_wp / now%reach
     end function associated_way
 
@@ -171,8 +167,8 @@ contains
 
         now = relaxed(self, x)
         there%slip = x * now%length
-        there%traction = self%alpha_t * (1.0_wp - x) * now%equivalent
-        there%stiffness = self%alpha_t * now%reach
+        there%traction = self%stiffness * (1.0_wp - x) * now%equivalent
+        there%stiffness = self%stiffness * now%reach
         there%rate = now%length * now%mean
         there%scale = there%traction
     end subroutine on_an_ellipse

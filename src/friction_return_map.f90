@@ -35,7 +35,7 @@ module friction_return_map
     !> stiffness must not rise with x. Here it is a straight line, and x the slip.
     type :: unloading
         real(wp) :: trial       !! tangential traction without slip [F/L^2]
-        real(wp) :: stiffness   !! at x = 0 [F/L^3]
+        real(wp) :: stiffness   !! tangential stiffness [F/L^3]
         real(wp) :: x_end       !! for the line trial/stiffness
     contains
         procedure :: at => on_a_line
