@@ -67,7 +67,11 @@ contains
         real(wp), intent(out) :: rate          !! [L/T]
         logical, intent(out) :: jumps
 
-        call cohesive_slip_rate(self%law, self%cohesion, state, load, rate, jumps)
+        if (self%cohesion > 0.0_wp) then
+            call cohesive_slip_rate(self%law, self%cohesion, state, load, rate, jumps)
+        else
+            call self%law%slip_rate(state, load, rate, jumps)
+        end if
     end subroutine slip_rate
 
     !> The law's `state_rates`, likewise.
@@ -78,7 +82,11 @@ contains
         real(wp), intent(in) :: rate           !! of slip, >= 0 [L/T]
         type(law_state) :: rates               !! per unit of time
 
-        rates = cohesive_state_rates(self%law, self%cohesion, state, load, rate)
+        if (self%cohesion > 0.0_wp) then
+            rates = cohesive_state_rates(self%law, self%cohesion, state, load, rate)
+        else
+            rates = self%law%state_rates(state, load, rate)
+        end if
     end function state_rates
 
     !> The law's `resistance_at`, likewise.

@@ -42,7 +42,9 @@ module slider_rates
         logical :: rigid = .false.       !! the contact has no spring
         type(programme) :: drive
         integer :: piece = 0             !! of the programme, in which the rates are taken
-        logical :: steady = .false.      !! drive and normal traction do not change in it
+        logical :: steady = .false.      !! drive and normal traction do not change in it: they are
+        real(dp), private :: constant_velocity = 0.0_dp   !! [L/T]
+        real(dp), private :: constant_pressure = 0.0_dp   !! [F/L^2]
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
         integer :: phase = phase_stick
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
@@ -79,6 +81,8 @@ contains
         self%piece = piece
         self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
             .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
+        self%constant_velocity = self%drive%velocity(piece)
+        self%constant_pressure = max(self%drive%normal(piece), self%least_pressure)
     end subroutine enter
 
     !> The sense of a motion or a force; of none, that of the loading: a mirrored motion has the
@@ -99,28 +103,35 @@ contains
         real(dp), intent(out) :: drive_velocity   !! [L/T]
         real(dp), intent(out) :: pressure         !! [F/L^2]
         real(dp), intent(out) :: pressure_rate    !! [F/L^2/T]
+
+        drive_velocity = self%constant_velocity
+        pressure = self%constant_pressure
+        pressure_rate = 0.0_dp
+        if (.not. self%steady) call changing_inputs(self, t, drive_velocity, pressure, &
+            pressure_rate)
+        if (self%phase /= phase_open) return
+        pressure = 0.0_dp
+        pressure_rate = 0.0_dp
+    end subroutine inputs
+
+    !> Those that change with time. By themselves, so that the rest is small enough to be inlined.
+    pure subroutine changing_inputs(self, t, drive_velocity, pressure, pressure_rate)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t
+        real(dp), intent(out) :: drive_velocity, pressure, pressure_rate
         real(dp), parameter :: two_pi = 8.0_dp * atan(1.0_dp)
 
         associate (d => self%drive, i => self%piece)
-            drive_velocity = d%velocity(i)
-            pressure = d%normal(i)
-            pressure_rate = 0.0_dp
-            if (.not. self%steady) then
-                drive_velocity = d%drive_velocity(t, i)
-                pressure = d%normal_traction(t, i)
-                pressure_rate = d%normal_rate(i)
-                if (d%amplitude > 0.0_dp) pressure_rate = pressure_rate + d%amplitude * two_pi &
-                    * d%frequency * cos(two_pi * d%frequency * t + d%phase)
-            end if
+            drive_velocity = d%drive_velocity(t, i)
+            pressure = d%normal_traction(t, i)
+            pressure_rate = d%normal_rate(i)
+            if (d%amplitude > 0.0_dp) pressure_rate = pressure_rate + d%amplitude * two_pi &
+                * d%frequency * cos(two_pi * d%frequency * t + d%phase)
         end associate
-        if (self%phase == phase_open) then
-            pressure = 0.0_dp
-            pressure_rate = 0.0_dp
-        else if (pressure < self%least_pressure) then
-            pressure = self%least_pressure
-            pressure_rate = 0.0_dp
-        end if
-    end subroutine inputs
+        if (pressure >= self%least_pressure) return
+        pressure = self%least_pressure
+        pressure_rate = 0.0_dp
+    end subroutine changing_inputs
 
     !> Rates of the unknowns.
     pure subroutine rates(self, t, y, dy, failed)
