@@ -92,7 +92,7 @@ contains
         integer, intent(in) :: n
         type(row), intent(inout) :: this
         real(dp) :: u(7), pressure, mu, internal, traction, length, angle
-        integer :: law, j
+        integer :: law, last, j
 
         law = nint(this%props(1))
         allocate (this%du(n, 3), this%statev(n, 8))
@@ -122,6 +122,10 @@ contains
             length = 10.0_dp**(2.0_dp * u(5) - 6.0_dp)
             angle = angle + u(6) - 0.5_dp
             this%du(j, :) = [0.0_dp, length * cos(angle), length * sin(angle)]
+            ! no two points alike, but nearly: their updates are those of the other rows
+            this%own(j, 3) = alpha * (1.0_dp + 1.0e-9_dp * u(7))
+            last = min(8, this%n_props)
+            this%own(j, 6:last) = this%props(6:last) * (1.0_dp + 1.0e-9_dp * u(2:last - 4))
         end do
     end subroutine draw_points
 

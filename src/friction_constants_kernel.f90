@@ -27,92 +27,89 @@ contains
         real(wp), intent(out) :: constants(lanes, n_constants)
         integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
         integer(c_int64_t) :: wrong(lanes), any_wrong
-        real(wp) :: chosen(lanes)
-        integer :: used, i, k
+        integer :: i, k
 
-        used = c_own + source%n_own - 1
         wrong = 0
         do k = 1, source%n_choices
-            call copy_column(count, props(:count, source%choice(k)), source%chosen(k), chosen)
-            call judge(chosen, bits(source%chosen(k)), bits(source%chosen(k)), .false., wrong)
+            call compare(count, props(:count, source%choice(k)), source%chosen(k), wrong)
         end do
-        do k = 1, used
-            if (source%place(k) > 0) then
-                call copy_column(count, props(:count, source%place(k)), source%value(k), &
-                    constants(:, k))
-                call judge(constants(:, k), bits(max(least, source%lower(k))), &
-                    bits(min(most, source%upper(k))), source%lower(k) <= 0.0_wp, wrong)
-            else
-                constants(:, k) = source%value(k)
-            end if
+        do k = 1, c_own + source%n_own - 1
+            if (source%place(k) == 0 .or. count < lanes) constants(:, k) = source%value(k)
+            if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
+                source%lower(k) > 0.0_wp, source%value(k), constants(:, k), wrong)
         end do
-        do k = c_own, used
-            if (source%not_below(k) > 0) call compare(constants(:, source%not_below(k)), &
-                constants(:, k), wrong)
-            if (source%not_above(k) > 0) call compare(constants(:, k), &
-                constants(:, source%not_above(k)), wrong)
+        do k = c_own, c_own + source%n_own - 1
+            call follow_rules(source, k, constants, wrong)
         end do
+        constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
+        if (source%place(c_cap) > 0) where (constants(:, c_cap) <= 0.0_wp) &
+            constants(:, c_cap) = no_cap
+        if (source%place(c_squeeze) > 0) call invert(constants(:, c_squeeze))
         left = 0
         any_wrong = 0
         do i = 1, lanes
             any_wrong = ior(any_wrong, wrong(i))
         end do
-        if (any_wrong < 0) then
-            left = merge(1_c_int, 0_c_int, wrong < 0)
-            do k = 1, used
-                where (left > 0) constants(:, k) = source%value(k)
-            end do
-        end if
-        constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
-        if (source%place(c_cap) > 0) then
-            do i = 1, lanes
-                if (constants(i, c_cap) <= 0.0_wp) constants(i, c_cap) = no_cap
-            end do
-        end if
-        if (source%place(c_squeeze) > 0) call invert(constants(:, c_squeeze))
+        if (any_wrong == 0) return
+        left = merge(1_c_int, 0_c_int, wrong /= 0)
+        do k = 1, c_own + source%n_own - 1
+            where (left > 0) constants(:, k) = source%value(k)
+        end do
     end subroutine copy_constants
 
-    !> A number of all points, and `value` for lanes without one.
-    pure subroutine copy_column(count, from, value, to)
+    !> One constant of all points; one that is not of ordinary size is replaced.
+    pure subroutine copy_column(count, from, not_zero, value, to, wrong)
         integer, intent(in) :: count
-        real(wp), intent(in) :: from(count), value
-        real(wp), intent(out) :: to(lanes)
+        real(wp), intent(in) :: from(count)
+        logical, intent(in) :: not_zero
+        real(wp), intent(in) :: value   !! that replaces it
+        real(wp), intent(inout) :: to(lanes)
+        integer(c_int64_t), intent(inout) :: wrong(lanes)   !! not 0 for what cannot be taken
+        integer(c_int64_t) :: number, zero, ordinary, low, high, other
+        integer :: i
 
-        if (count == lanes) then
-            to = from(:lanes)   ! a length that the compiler knows
-        else
-            to(:count) = from
-            to(count + 1:) = value
-        end if
+        zero = merge(bits(most), 0_c_int64_t, not_zero)   ! that is refused, too
+        low = bits(least)
+        high = bits(most)
+        other = bits(value)
+        do i = 1, count
+            number = bits(from(i))
+            ! all bits or none
+            ordinary = iand(shifta(low - number, 63), shifta(number - high, 63))
+            if (number == zero) ordinary = -1
+            to(i) = transfer(ior(iand(number, ordinary), iand(other, not(ordinary))), value)
+            wrong(i) = ior(wrong(i), not(ordinary))
+        end do
     end subroutine copy_column
 
-    !> Numbers between two others, as integers; or zeros, where these are admitted.
-    pure subroutine judge(values, low, high, zero_too, wrong)
-        real(wp), intent(in) :: values(lanes)
-        integer(c_int64_t), intent(in) :: low, high       !! of numbers >= 0
-        logical, intent(in) :: zero_too
-        integer(c_int64_t), intent(inout) :: wrong(lanes)   !! below 0 for what cannot be taken
-        integer(c_int64_t) :: number, refused
+    !> A constant that has to be the same at all points. Compares bits: silent where a comparison
+    !> with NaN raises an exception.
+    pure subroutine compare(count, from, chosen, wrong)
+        integer, intent(in) :: count
+        real(wp), intent(in) :: from(count), chosen
+        integer(c_int64_t), intent(inout) :: wrong(lanes)
         integer :: i
 
-        refused = merge(0_c_int64_t, -1_c_int64_t, zero_too)
-        do i = 1, lanes
-            number = bits(values(i))   ! signs tell, also of differences that overflow below 0
-            wrong(i) = ior(ior(wrong(i), number), ior(high - number, &
-                iand(number - low, ior(-number, refused))))
-        end do
-    end subroutine judge
-
-    !> A constant that must not be above another one.
-    pure subroutine compare(lower, upper, wrong)
-        real(wp), intent(in) :: lower(lanes), upper(lanes)
-        integer(c_int64_t), intent(inout) :: wrong(lanes)   !! below 0 for what cannot be taken
-        integer :: i
-
-        do i = 1, lanes
-            wrong(i) = ior(wrong(i), bits(upper(i)) - bits(lower(i)))
+        do i = 1, count
+            wrong(i) = ior(wrong(i), ieor(bits(from(i)), bits(chosen)))
         end do
     end subroutine compare
+
+    !> Rules of module friction_law_constants that lanes can break although their constants are of
+    !> ordinary size.
+    pure subroutine follow_rules(source, k, constants, wrong)
+        type(constants_source), intent(in) :: source
+        integer, intent(in) :: k   !! column
+        real(wp), intent(in) :: constants(lanes, n_constants)
+        integer(c_int64_t), intent(inout) :: wrong(lanes)
+
+        if (source%lower(k) > least) where (constants(:, k) < source%lower(k)) wrong = 1
+        if (source%upper(k) < most) where (constants(:, k) > source%upper(k)) wrong = 1
+        if (source%not_below(k) > 0) where (constants(:, k) < constants(:, source%not_below(k))) &
+            wrong = 1
+        if (source%not_above(k) > 0) where (constants(:, k) > constants(:, source%not_above(k))) &
+            wrong = 1
+    end subroutine follow_rules
 
     !> mu_1/mu_2 from mu_2/mu_1, where 0 stands for 1.
     pure subroutine invert(ratio)
