@@ -76,10 +76,9 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
 contains
 
     !> A linear perturbation step asks for the stiffness of the base state: about it the contact
-    !> moves without time, and nothing of it changes.
+    !> moves without time, nothing of it changes, and no friction follows the pressure.
     subroutine base_stiffness()
         real(wp) :: base(statev_size), traction(3), tangent(9), still(3)
-        integer :: i, j
 
         status = friction_bad_size
         still = 0.0_wp
@@ -91,12 +90,7 @@ contains
             call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
             return
         end if
-        do j = 1, ndir
-            do i = 1, ndir
-                ddsddr(i, j) = tangent((j - 1) * ndir + i)
-                if (i > 1 .and. j == 1) ddsddr(i, j) = -ddsddr(i, j)
-            end do
-        end do
+        ddsddr(1:ndir, 1:ndir) = reshape(tangent(1:ndir**2), [ndir, ndir])
     end subroutine base_stiffness
 
 end subroutine stickslip_uinter
