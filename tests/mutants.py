@@ -324,7 +324,8 @@ class Trial:
         for text in (self.changed, self.mutant.text):
             if text not in self.base.objects:
                 self.source.write_text(text)
-                self.base.compile(self.source, self.folder, '-O2', '-c', '-o', 'compared.o')
+                if not self.base.compile(self.source, self.folder, '-O2', '-c', '-o', 'compared.o'):
+                    return False   # a value that the switch hides from the compiler, such as 1/0
                 self.base.objects[text] = (self.folder / 'compared.o').read_bytes()
         return self.base.objects.pop(self.changed) == self.base.objects[self.mutant.text]
 
