@@ -474,10 +474,9 @@ contains
         real(wp), intent(in) :: y        !! >= 0
         real(wp), intent(in) :: change   !! of X
         real(wp) :: slope                !! 0 to 1
-        real(wp), parameter :: far = 600.0_wp
 
         slope = 0.0_wp
-        if (y > 0.0_wp) slope = slope_asinh_exp(min(max(ln_sinh(y) + change, -far), far))
+        if (y > 0.0_wp) slope = slope_asinh_exp(ln_sinh(y) + change)
     end function slope_of_asinh
 
     !> ln(sinh(y)), however large y is.
