@@ -151,7 +151,7 @@ contains
         options%damping = 0.0_wp
         if (nprops < place) return
         call options_of(nprops - place + 1, props(place:), options, status)
-        if (status < 0) return
+        if (status /= friction_ok) return
         if (max(options%tau_max, options%cohesion, options%damping) > 0.0_wp) then
             call take_options(options, storage, surface)
         end if
@@ -226,7 +226,7 @@ contains
         status = friction_bad_law
         if (.not. associated(own)) return
         call own%read(nprops - first_own_prop + 1, props(first_own_prop:), n_own, status)
-        if (status < 0) return
+        if (status /= friction_ok) return
         place = first_own_prop + n_own
         own%follows_path = .false.
         own%tau_max = huge(own%tau_max)
