@@ -188,7 +188,7 @@ class Base:
             link = self.build / f'tests/CMakeFiles/{target}.dir/link.txt'
             if test['name'] in SCRIPTS:
                 self.tests.append(Test(test['name'], test['command'], settings['WORKING_DIRECTORY'], environment=settings['ENVIRONMENT']))
-            elif link.exists() and 'build' not in ' '.join(test['command'][1:]):   # others are scripts or load a library by its place
+            elif link.exists() and str(self.build) not in ' '.join(test['command'][1:]):   # others are scripts or load a library by its place
                 program, sources = self.linked(target, link.read_text())
                 self.tests.append(Test(test['name'], [str(program), *test['command'][1:]], settings['WORKING_DIRECTORY'], sources))
         for test in self.tests:

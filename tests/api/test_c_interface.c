@@ -187,6 +187,50 @@ static void slip_rates_balance_the_traction(void)
           == FRICTION_BAD_LAW);
 }
 
+/* Each pointer alone, then each size alone, which is told first. */
+static void every_null_and_every_negative_size_is_told(void)
+{
+    enum { pointers = 7, n = 1 };
+    double numbers[32] = {0}, *p[pointers];
+    int ok[n], *s, i, k;
+
+    for (i = 0; i < pointers; i++) {
+        for (k = 0; k < pointers; k++)
+            p[k] = k == i ? NULL : numbers;
+        s = i == 5 ? NULL : ok;
+        if (i < 5)
+            CHECK(friction_update(3, p[0], 0, 9, p[1], 8, p[2], p[3], p[4]) == FRICTION_NULL_POINTER);
+        if (i < 6) {
+            CHECK(friction_tangential(2, p[0], 1, 0, 9, p[1], 8, p[2], p[3], p[4], p[5]) == FRICTION_NULL_POINTER);
+            CHECK(friction_update_batch(n, 3, p[0], 0, 9, p[1], 8, p[2], p[3], p[4], s) == FRICTION_NULL_POINTER);
+            CHECK(friction_update_batch_props(n, 3, p[0], 0, 9, p[1], 8, p[2], p[3], p[4], s)
+                  == FRICTION_NULL_POINTER);
+            CHECK(friction_update_points(n, 3, p[0], 0, 9, p[1], 8, p[2], p[3], p[4], s) == FRICTION_NULL_POINTER);
+        }
+        if (i < 4)
+            CHECK(friction_rates(3, p[0], 9, p[1], 8, p[2], p[3]) == FRICTION_NULL_POINTER);
+        CHECK(friction_slip_rates(n, p[0], p[1], 1, 8, p[2], p[3], p[4], p[6], s) == FRICTION_NULL_POINTER);
+    }
+    for (i = 0; i < 4; i++) {
+        const int64_t points = i == 3 ? -1 : 1;
+        const int ndir = i == 0 ? -1 : 3, nprops = i == 1 ? -1 : 9, nstatv = i == 2 ? -1 : 8;
+        if (i < 3) {
+            CHECK(friction_update(ndir, NULL, 0, nprops, NULL, nstatv, NULL, NULL, NULL) == FRICTION_BAD_SIZE);
+            CHECK(friction_tangential(ndir, NULL, 1, 0, nprops, NULL, nstatv, NULL, NULL, NULL, NULL)
+                  == FRICTION_BAD_SIZE);
+            CHECK(friction_rates(ndir, NULL, nprops, NULL, nstatv, NULL, NULL) == FRICTION_BAD_SIZE);
+        }
+        CHECK(friction_update_batch(points, ndir, NULL, 0, nprops, NULL, nstatv, NULL, NULL, NULL, NULL)
+              == FRICTION_BAD_SIZE);
+        CHECK(friction_update_batch_props(points, ndir, NULL, 0, nprops, NULL, nstatv, NULL, NULL, NULL, NULL)
+              == FRICTION_BAD_SIZE);
+        CHECK(friction_update_points(points, ndir, NULL, 0, nprops, NULL, nstatv, NULL, NULL, NULL, NULL)
+              == FRICTION_BAD_SIZE);
+        if (points < 0 || nprops < 0)
+            CHECK(friction_slip_rates(points, NULL, NULL, 1, nprops, NULL, NULL, NULL, NULL, NULL) == FRICTION_BAD_SIZE);
+    }
+}
+
 static void bad_calls_are_codes_and_touch_nothing(void)
 {
     double statev[8] = {0}, traction[3] = {7, 7, 7}, tangent[9] = {7}, bad[9];
@@ -404,6 +448,7 @@ int main(int argc, char **argv)
     points_are_in_c_order();
     rates_are_what_the_update_tends_to();
     slip_rates_balance_the_traction();
+    every_null_and_every_negative_size_is_told();
     bad_calls_are_codes_and_touch_nothing();
     laws_tell_their_constants();
     broken_rules_are_told();
