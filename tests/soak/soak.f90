@@ -281,18 +281,18 @@ contains
         blur = length / t%props(6) * abs(log(t%new(6) / t%old(6))) / max(exp(x) - 1.0_dp, x)
     end function blur_of_state
 
-    !> Between two tangents, by stiffness and condition.
+    !> Between two tangents, by stiffness, which is that of spring and damper, and condition.
     function tangent_distance(t, tangent) result(apart)
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: tangent(:, :)
         real(dp) :: apart
-        real(dp) :: largest_
+        real(dp) :: stick, largest_
         integer :: m
 
         m = size(tangent, 1)
-        largest_ = max(t%props(2), t%props(3), maxval(abs(tangent)))
-        apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * max(1.0_dp, largest_ &
-            / max(t%props(2), t%props(3) + viscous_of(t))))
+        stick = max(t%props(2), t%props(3) + viscous_of(t))
+        largest_ = max(stick, maxval(abs(tangent)))
+        apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
     end function tangent_distance
 
     !> The same increment in a turned frame; its state is taken again.
