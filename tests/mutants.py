@@ -363,7 +363,8 @@ def main():
     options = parser.parse_args()
 
     known = known_equivalents()
-    every = [mutant for file in sorted((ROOT / 'src').rglob('*.f90')) for mutant in mutants_of(str(file.relative_to(ROOT)))]
+    every = [mutant for file in sorted((ROOT / 'src').rglob('*.f90')) if 'build_time' not in file.parts   # ends before tests begin
+             for mutant in mutants_of(str(file.relative_to(ROOT)))]
     stale = [patterns for patterns, _ in known if not any(explained(mutant, [(patterns, '')]) for mutant in every)]
     for patterns in stale:
         print('tests/mutants_equivalent.txt, no such line or mutation any more:', ' | '.join(it.pattern for it in patterns))
