@@ -72,14 +72,17 @@ contains
         real(wp), intent(in) :: e(6)
         type(separation), intent(out) :: this
         logical, intent(out) :: usable
+        integer, parameter :: widest = 100   ! strains of 2^100, whose powers do not overflow
         real(wp) :: q, by_q(6), in_plane(2), c(2)
 
+        usable = maxval(exponent(e)) <= widest
+        if (.not. usable) return
         c(1) = e(xz)
         c(2) = e(yz)
         in_plane(1) = e(xx) * c(1) + 0.5_wp * e(xy) * c(2)
         in_plane(2) = 0.5_wp * e(xy) * c(1) + e(yy) * c(2)
         q = 2.0_wp * e(zz) - c(1)**2 - c(2)**2 + 2.0_wp * (c(1) * in_plane(1) + c(2) * in_plane(2))
-        usable = q > -1.0_wp .and. q < huge(q)
+        usable = q > -1.0_wp
         if (.not. usable) return
         this%d(1) = q / (1.0_wp + sqrt(1.0_wp + q))
         this%d(2) = c(1) - in_plane(1)

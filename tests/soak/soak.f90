@@ -247,7 +247,8 @@ contains
             / (t%props(3) + viscous_of(t)))))
         condition = 1.0_dp
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
-        if (creeps(nint(t%props(1)))) condition = 1.0_dp + t%props(8) / t%props(4) / 30.0_dp
+        if (creeps(nint(t%props(1)))) condition = 1.0_dp + (t%props(8) + t%props(5) &
+            * state_term(t)) / t%props(4) / 30.0_dp
         inner = max(abs(t%new(5:6)), [1.0e-20_dp, 1.0e-300_dp])   ! a coefficient that small is none
         ! Their friction is mu_s less what the slip D took away, which rounds by that of mu_s.
         if (any(nint(t%props(1)) == [5, 6])) inner = max(inner, [t%props(4), length])
@@ -265,6 +266,16 @@ contains
         apart = max(apart, abs(state(8) - t%new(8)) / max((force + damper) * length + t%new(8), &
             1.0e-300_dp))
     end function distance
+
+    !> The larger one of |ln(v0 theta/d_c)| before and after [-].
+    function state_term(t) result(term)
+        type(trial_of), intent(in) :: t
+        real(dp) :: term
+
+        term = abs(log(t%props(7)) + log(t%new(6)) - log(t%props(6)))
+        if (t%old(6) > 0.0_dp) term = max(term, abs(log(t%props(7)) + log(t%old(6)) &
+            - log(t%props(6))))
+    end function state_term
 
     !> By how many units of round-off theta may differ because the slip is a difference of
     !> displacements and has the round-off of these: length/d_c times d(ln theta)/d(slip/d_c), which
@@ -286,13 +297,17 @@ contains
         type(trial_of), intent(in) :: t
         real(dp), intent(in) :: tangent(:, :)
         real(dp) :: apart
-        real(dp) :: stick, largest_
+        real(dp) :: stick, largest_, slip
         integer :: m
 
         m = size(tangent, 1)
         stick = max(t%props(2), t%props(3) + viscous_of(t))
         largest_ = max(stick, maxval(abs(tangent)))
         apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
+        ! It depends on the slip, a difference of displacements, which round.
+        slip = t%new(7) - t%old(7)
+        if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) &
+            * (norm2(t%old(3:4)) + norm2(t%du(2:3))) / slip)
     end function tangent_distance
 
     !> The same increment in a turned frame; its state is taken again.
