@@ -323,7 +323,7 @@ static void laws_tell_their_constants(void)
     friction_constant_facts constant;
     double value = 7;
     char summary[81];
-    const double rate_state[8] = {4, 1, 1, .01, .02, 6, 2, .4};
+    const double rate_state[8] = {4, 1, 1, .01, .02, 6, 2, .4}, subloading[4] = {1, 1, 1, .4}, unknown[1] = {999};
     int i;
 
     CHECK(friction_get_law(1, &law) == FRICTION_OK && strcmp(law.name, "subloading") == 0 && law.constants == 16);
@@ -340,10 +340,20 @@ static void laws_tell_their_constants(void)
     CHECK(friction_get_constant(4, 8, &constant) == FRICTION_OK && constant.choice == 1 && constant.upper == 1
           && strcmp(constant.words, "ageing slip") == 0 && strcmp(constant.default_text, "ageing") == 0);
     CHECK(friction_get_default(8, rate_state, 9, &value) == FRICTION_OK && value == 3);
+    /* as many constants as the default takes are enough: d_c and v0, mu_s, none */
+    CHECK(friction_get_default(7, rate_state, 9, &value) == FRICTION_OK && value == 3);
+    CHECK(friction_get_default(4, subloading, 8, &value) == FRICTION_OK && value == .4);
+    CHECK(friction_get_default(3, subloading, 8, &value) == FRICTION_BAD_PROPERTY);
+    CHECK(friction_get_default(1, subloading, 9, &value) == FRICTION_OK && value == 0);
+    CHECK(friction_get_default(4, subloading, 0, &value) == FRICTION_BAD_PROPERTY);
+    CHECK(friction_get_default(1, unknown, 9, &value) == FRICTION_BAD_LAW);
     ranges_are_those_that_are_checked();
     CHECK(friction_get_law_summary(2, 81, summary) == FRICTION_OK
           && strcmp(summary, "Friction proportional to the pressure") == 0);
     CHECK(friction_get_law_summary(2, 9, summary) == FRICTION_OK && strcmp(summary, "Friction") == 0);
+    CHECK(friction_get_law_summary(2, 1, summary) == FRICTION_OK && strcmp(summary, "") == 0);
+    CHECK(friction_get_law_summary(friction_law_count(), 81, summary) == FRICTION_OK && strcmp(summary, "") != 0);
+    CHECK(friction_get_law_summary(2, 9, summary) == FRICTION_OK);
     CHECK(friction_get_law_summary(2, 0, summary) == FRICTION_BAD_SIZE
           && friction_get_law_summary(0, 81, summary) == FRICTION_BAD_LAW
           && friction_get_law_summary(2, 81, NULL) == FRICTION_NULL_POINTER && strcmp(summary, "Friction") == 0);
