@@ -528,7 +528,7 @@ contains
         real(wp), intent(in) :: constants(lanes, n_constants)
         real(wp), intent(in) :: own_strength(lanes)   !! of the law without the cap [F/L^2]
         type(slide_block), intent(inout) :: block
-        real(wp), parameter :: few_digits = 1.0e-8_wp
+        real(wp), parameter :: of_exponents = 1.0e-8_wp   ! round-off of what follows from them
         real(wp), dimension(lanes) :: trial, held
         real(wp) :: slip, near, verge_of_cap
         integer :: i
@@ -545,7 +545,7 @@ contains
         end do
         call slide_by_law(task, constants, block)
         near = 4.0_wp * verge   ! round-off decides whether the cap holds
-        if (follows_rate(task)) near = few_digits   ! that of the terms in an exponential
+        if (follows_rate(task)) near = of_exponents
         do i = 1, block%n
             block%trial(i) = trial(i)
             if (block%resistance(i) > constants(i, c_cap)) held(i) = 1.0_wp

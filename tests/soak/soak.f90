@@ -239,7 +239,7 @@ contains
         integer :: m
 
         m = size(traction)
-        length = max(norm2(t%old(3:4)) + norm2(t%du(2:3)), tiny(length))
+        length = max(displaced(t), tiny(length))
         ! Round-off of the displacements changes the traction by the tangent.
         force = max(norm2(t%traction), maxval(abs(t%tangent(2:m, 2:m))) * length, tiny(force))
         apart = maxval(abs(traction - t%traction(:m))) / force
@@ -306,9 +306,16 @@ contains
         apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
         ! It depends on the slip, a difference of displacements, which round.
         slip = t%new(7) - t%old(7)
-        if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) &
-            * (norm2(t%old(3:4)) + norm2(t%du(2:3))) / slip)
+        if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) * displaced(t) / slip)
     end function tangent_distance
+
+    !> The displacements whose difference the slip is [L].
+    pure function displaced(t) result(length)
+        type(trial_of), intent(in) :: t
+        real(dp) :: length
+
+        length = norm2(t%old(3:4)) + norm2(t%du(2:3))
+    end function displaced
 
     !> The same increment in a turned frame; its state is taken again.
     subroutine compare_frame(t)
