@@ -306,7 +306,8 @@ contains
         apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
         ! It depends on the slip, a difference of displacements, which round.
         slip = t%new(7) - t%old(7)
-        if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) * displaced(t) / slip)
+        if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) * displaced(t) &
+            / slip)
     end function tangent_distance
 
     !> The displacements whose difference the slip is [L].
