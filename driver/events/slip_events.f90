@@ -61,11 +61,11 @@ module slip_events
         logical, private :: started = .false.
         real(dp), private :: reached = 0.0_dp     !! farthest place of the drive in that sense [L]
         real(dp), private :: change = 0.0_dp      !! of the force in the step before [F]
-        type(moment), private :: peak, trough     !! extremes since the last turn
+        type(moment), private :: peak = moment(), trough = moment()   !! since the last turn
         real(dp), private :: fastest = 0.0_dp     !! largest velocity since the peak [L/T]
         real(dp), private :: slipping = 0.0_dp    !! largest slip rate since the peak [L/T]
         real(dp), private :: driving = 0.0_dp     !! largest speed of the drive since the peak [L/T]
-        type(slip_event), private :: current      !! the fall so far
+        type(slip_event), private :: current = slip_event()           !! the fall so far
         logical, private :: is_event = .false.    !! it was fast enough to be an event
         logical, private :: any_before = .false.
         real(dp), private :: last_onset = 0.0_dp  !! of the event before [T]
