@@ -545,40 +545,56 @@ contains
         if (.not. self%broken) self%not_listed = max(0, unknown - most_shown)
     end subroutine refuse_unknown
 
-    !> A hint to where a key belongs, another group that has it, or a key that is spelled much like
-    !> it; with an empty key the same of a group. Empty where there is nothing to say.
-    pure function suggestion(self, group, key) result(text)
+    !> What may have been meant by a key that is unknown: its hint in this group, one of its keys
+    !> that is much like it, or else another group that has it. With an empty key, what group may
+    !> have been meant. Empty where there is nothing to say.
+    function suggestion(self, group, key) result(text)
         class(namelist_file), intent(in) :: self
         character(len=*), intent(in) :: group, key
         character(len=:), allocatable :: text
-        character(len=name_length + 1) :: nearest
-        integer :: distance, least, i
+        character(len=:), allocatable :: nearest, elsewhere
+        integer :: least, i
 
         text = ''
-        nearest = ''
         if (len(group) > name_length .or. len(key) > name_length) return
-        least = max(1, len_trim(key // group) / 3) + 1
-        if (len(key) > 0) least = max(1, len(key) / 3) + 1
+        nearest = ''
+        elsewhere = ''
+        least = max(1, len(key) / 3) + 1
+        if (len(key) == 0) least = max(1, len(group) / 3) + 1
         do i = 1, self%n_keys
             associate (known => self%keys(i))
-                if (len(key) > 0 .and. len_trim(known%key) == 0) cycle
-                if (known%key == key .and. len(key) > 0) then
-                    text = '; &' // trim(known%group) // ' has a key of that name'
-                    if (allocated(known%hint)) text = '; ' // known%hint
-                    if (known%group == group) return
-                    cycle
+                if (len(key) == 0) then
+                    call compare(group, trim(known%group), '&')
+                else if (known%group /= group) then
+                    if (known%key == key .and. .not. allocated(known%hint)) elsewhere = known%group
+                else if (.not. allocated(known%hint)) then
+                    if (len_trim(known%key) > 0) call compare(key, trim(known%key), '')
+                else if (known%key == key) then
+                    text = '; ' // known%hint
+                    return
                 end if
-                if (len(key) > 0 .and. known%group /= group) cycle
-                if (allocated(known%hint)) cycle
-                if (len(key) > 0) distance = edits(key, trim(known%key))
-                if (len(key) == 0) distance = edits(group, trim(known%group))
-                if (distance >= least) cycle
-                least = distance
-                nearest = known%key
-                if (len(key) == 0) nearest = '&' // known%group
             end associate
         end do
-        if (len_trim(nearest) > 0) text = "; did you mean '" // trim(nearest) // "'?"
+        if (len(nearest) > 0) then
+            text = "; did you mean '" // nearest // "'?"
+        else if (len(elsewhere) > 0) then
+            text = '; &' // trim(elsewhere) // ' has a key of that name'
+        end if
+
+    contains
+
+        !> A word that is the beginning of another is much like it, too.
+        subroutine compare(word, known, mark)
+            character(len=*), intent(in) :: word, known, mark
+            integer :: distance
+
+            distance = edits(word, known)
+            if (index(known, word) == 1) distance = 1
+            if (distance >= least .or. distance == len(word) .and. known(1:1) /= word(1:1)) return
+            least = distance
+            nearest = mark // known
+        end subroutine compare
+
     end function suggestion
 
     !> How many letters must be changed, added, taken out or exchanged with the next one to turn

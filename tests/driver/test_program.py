@@ -321,6 +321,24 @@ class Laws(Program):
                      "&friction evolution: unknown key; it belongs to the law 'rate_and_state'")
         self.refused(namelist({('friction', 'kapa'): '0.3'}), "&friction kapa: unknown key; did you mean 'kappa'?")
 
+    def test_a_key_is_told_of_a_law_only_in_the_group_of_the_law(self):
+        for law in LAWS:
+            self.refused(law_namelist(law) + '&chain n = 5, coupling = 1 /\n',
+                         "&chain n: unknown key; did you mean 'n_blocks'?")
+        for key in ('kappa', 'mu_k', 'theta_0', 'v_w', 'evolution'):   # of laws that the input does not have
+            friction = f"&friction law = 'coulomb', mu = 0.3, alpha_n = 1, alpha_t = 1, {key} = 1 /\n"
+            groups = ('slider', 'drive', 'time', 'chain', 'events', 'output', 'initial')
+            slider = friction + namelist({(group, key): '1' for group in groups}, without=[('friction', None)])
+            sweep = f"&sweep key = 'time%dt', values = 1e-3, {key} = 1 /"
+            for verb, text, known in (('run', slider, 8), ('stability', slider, 8), ('sweep', slider + sweep, 9),
+                                      ('point', friction + f'&point {key} = 1 /', 2),
+                                      ('fault', friction + f'&fault {key} = 1 / &time {key} = 1 / &output {key} = 1 /', 4)):
+                told = self.run_text(text, verb='check' if verb == 'fault' else verb).stderr.splitlines()
+                told = [line for line in told if f' {key}: unknown key' in line]
+                self.assertEqual(len(told), known, told)
+                self.assertEqual([line for line in told if 'belongs to the law' in line],
+                                 [line for line in told if '&friction' in line])
+
     def test_constants_left_out_or_out_of_range_are_all_named(self):
         for law, constants in LAWS.items():
             self.refused(law_namelist(law, **{key: '-1' for key in constants}),
