@@ -160,11 +160,12 @@ contains
     end subroutine read_rows
 
     !> Slip of a chain's block counts as an event's from a part of the velocity on that a block
-    !> reaches when friction falls from static to kinetic.
+    !> reaches when friction falls from static to kinetic. Where no such fall is known, as under
+    !> rate-and-state friction, it is a multiple of the drive's largest velocity.
     subroutine derive_slip_rate(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
-        real(dp), parameter :: part = 0.05_dp
+        real(dp), parameter :: part = 0.05_dp, multiple = 10.0_dp
         type(facts) :: law
 
         if (run%chain%n_blocks == 1 .or. run%chain%slip_rate > 0.0_dp) return
@@ -173,8 +174,12 @@ contains
         run%chain%slip_rate = part * run%area * (law%typical_coefficient &
             - law%kinetic_coefficient) * run%drive%largest_normal() &
             / sqrt(run%stiffness * run%mass)
-        if (run%chain%slip_rate <= 0.0_dp) call file%add_fault(0, &
-            '&chain slip_rate: is missing, and has no default where friction does not fall')
+        if (run%chain%slip_rate > 0.0_dp) return
+        run%chain%slip_rate = multiple * maxval(abs(run%drive%velocity))
+        if (run%chain%slip_rate <= 0.0_dp) call file%add_fault(file%line_of_group('chain'), &
+            '&chain slip_rate: is missing: give the slip rate from which on a block takes part ' &
+            // 'in an event. It has no default where friction does not fall from static to ' &
+            // 'kinetic and the drive never moves')
     end subroutine derive_slip_rate
 
     subroutine read_fields(file, run)

@@ -271,6 +271,30 @@ class LongChain(Chain):
 
 
 class Catalogue(Chain):
+    def test_the_slip_rate_of_an_event_is_ten_times_the_drive_s_where_friction_has_no_fall_to_tell_it(self):
+        text = """
+&friction law={law} alpha_n=1 alpha_t=1 /
+&slider mass=1e-3 stiffness=1 damping=0.01 area=1000 normal_traction=0.01 /
+&drive velocity={velocity} duration=3, 4 /
+&initial mu=0.6 velocity=0.2 /
+&chain n_blocks=5 coupling=5 ends='periodic' scatter=0.2 {slip_rate} /
+&time t_end=6.5 rtol=1e-5 /
+&output interval=100000 /
+"""
+        rate_and_state = "'rate_and_state' a=0.01 b=0.015 d_c=0.01 v0=1e-3 f0=0.6 theta_0=10"
+        catalogues = []
+        for slip_rate in ('', 'slip_rate=2', 'slip_rate=1'):
+            self.assert_done(self.run_text(text.format(law=rate_and_state, velocity='0.1 -0.2', slip_rate=slip_rate),
+                                           '--no-plot'))
+            catalogues.append((self.folder / 'case_out/case_events.csv').read_text())
+        self.assertGreater(catalogues[0].count('\n'), 1)
+        self.assertEqual(catalogues[0], catalogues[1])
+        self.assertNotEqual(catalogues[0], catalogues[2])
+        shutil.rmtree(self.folder / 'case_out')
+        for law in (rate_and_state, "'coulomb' mu=0.6", "'subloading' mu_s=0.6 mu_k=0.6 kappa=1 xi=0 m=100"):
+            self.refused(text.format(law=law, velocity='0 0', slip_rate=''), 'case.nml:6: &chain slip_rate: is missing: give',
+                         'where friction does not fall from static to kinetic and the drive never moves')
+
     def test_a_chain_that_moves_as_one_has_events_of_all_its_blocks(self):
         self.run_chain({('output', 'fields'): '1'})
         rows = self.rows('case_out/case_events.csv')
@@ -451,7 +475,7 @@ class BadChains(Chain):
         self.refused(namelist({('chain', 'seed'): '1'}), '&chain n_blocks: is missing',
                      '&chain coupling: is missing')
         self.refused(namelist({**RUN, ('slider', 'mass'): '0'}), '&chain n_blocks = 20: must be 1 without a mass')
-        self.refused(namelist({**RUN, ('friction', 'mu_k'): '0.4'}), '&chain slip_rate: is missing')
+        self.refused(namelist({**RUN, ('friction', 'mu_k'): '0.4', ('drive', 'velocity'): '0'}), '&chain slip_rate: is missing')
         self.refused(namelist({('output', 'fields'): '5'}), '&output fields = 5: needs a chain')
 
 
