@@ -3,7 +3,7 @@
 
     tests/check_procedures.py [ROOT]
 
-Looks at all Fortran below src, driver, tests, bench and examples. A procedure has at most 60 lines, those of
+Looks at all Fortran below src, driver, tests, bench, examples and cmake. A procedure has at most 60 lines, those of
 the procedures inside it not counted, and eight arguments, the object that it belongs to (`self`) not counted.
 EXCEPTIONS names those that may have more, with the reason; one that is not needed is a fault, too. Exit status
 1 with a line for each fault.
@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ('src', 'driver', 'tests', 'bench', 'examples')
+FOLDERS = ('src', 'driver', 'tests', 'bench', 'examples', 'cmake')
 LONGEST = 60   # lines of a procedure
 WIDEST = 8     # arguments
 
