@@ -100,6 +100,7 @@ module friction_law
         procedure(slip_rate_interface), deferred :: slip_rate
         procedure(state_rates_interface), deferred :: state_rates
         procedure :: resistance_at => resistance_at_any_rate
+        procedure :: resistance_by_memory => remembers_nothing
         procedure :: traits => simple_traits
         procedure :: slopes => slopes_of_convex
         procedure :: scale_of_terms => scale_of_itself
@@ -318,6 +319,18 @@ contains
         call self%rest(0.0_wp, pressure, 0.0_wp, state, new, resistance)
         by_rate = 0.0_wp
     end subroutine resistance_at_any_rate
+
+    !> Derivative of `resistance_at` by what the law remembers, or by its logarithm (`traits`).
+    !> Asked of laws without a yield point on a contact without a spring: they override this.
+    pure function remembers_nothing(self, state, rate, pressure) result(derivative)
+        class(law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate       !! slip rate, >= 0 [L/T]
+        real(wp), intent(in) :: pressure   !! contact pressure, >= 0 [F/L^2]
+        real(wp) :: derivative             !! [F/L^2]
+
+        derivative = 0.0_wp
+    end function remembers_nothing
 
     !> A law that remembers something, or that starts to slip in another way, overrides this.
     pure function simple_traits(self) result(traits)

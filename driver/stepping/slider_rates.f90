@@ -456,10 +456,9 @@ contains
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
         type(contact_motion), intent(out) :: contact
-        real(dp), parameter :: little = 1.0e-6_dp
         type(load_rates) :: load
         type(law_state) :: state
-        real(dp) :: sense, tau, by_rate, shifted(controlled), other, by_other, acceleration
+        real(dp) :: sense, tau, by_rate, by_memory, acceleration
         logical :: jumps
 
         contact%traction = self%alpha * y(elastic)
@@ -471,14 +470,11 @@ contains
         call take_memory(self, self%surface%state_rates(state, load, contact%slip), state, &
             contact)
         call self%surface%resistance_at(state, contact%slip, pressure, tau, by_rate)
-        shifted = y
-        shifted(memory) = y(memory) + little
-        call self%surface%resistance_at(law_state_of(self, shifted, pressure), contact%slip, &
-            pressure, other, by_other)
+        by_memory = self%surface%law%resistance_by_memory(state, contact%slip, pressure)
         acceleration = (pull - self%damping * contact%velocity - self%area * contact%traction) &
             / self%mass
         contact%elastic = (by_rate * acceleration + sense * (tau / pressure * pressure_rate &
-            + (other - tau) / little * contact%memory)) / self%alpha
+            + by_memory * contact%memory)) / self%alpha
     end subroutine following_contact
 
     !> The slip rate of a law without a yield point at which `push = drag v + traction(v)`, by

@@ -56,7 +56,7 @@ module friction_rate_state_law
         procedure :: slide
         procedure :: slip_rate
         procedure :: state_rates
-        procedure :: resistance_at
+        procedure :: resistance_at, resistance_by_memory
         procedure :: traits
         procedure :: slopes
         procedure :: scale_of_terms
@@ -117,6 +117,7 @@ module friction_rate_state_law
     real(wp), parameter :: ln_most_state = 690.0_wp   !! of theta, so that it stays a number
     real(wp), parameter :: least_state = 1.0e-250_wp   !! v0 theta/d_c of a shifted law ends there
     real(wp), parameter :: ln_2 = 0.693147180559945309417232121458176568_wp
+    real(wp), parameter :: least_rate = tiny(1.0_wp) / epsilon(1.0_wp)   !! slower ones count as it
 
 contains
 
@@ -806,13 +807,22 @@ contains
         type(law_state), intent(in) :: state
         real(wp), intent(in) :: rate, pressure
         real(wp), intent(out) :: resistance, by_rate
-        real(wp) :: x, floor
+        real(wp) :: x
 
-        floor = tiny(rate) / epsilon(rate)
-        x = direct_exponent(self, max(rate, floor), 1.0_wp, log(state%r))
+        x = direct_exponent(self, max(rate, least_rate), 1.0_wp, log(state%r))
         resistance = self%a * pressure * asinh_exp(x)
-        by_rate = self%a * pressure * slope_asinh_exp(x) / max(rate, floor)
+        by_rate = self%a * pressure * slope_asinh_exp(x) / max(rate, least_rate)
     end subroutine resistance_at
+
+    pure function resistance_by_memory(self, state, rate, pressure) result(derivative)
+        class(rate_state_law), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(wp), intent(in) :: rate, pressure
+        real(wp) :: derivative
+
+        derivative = self%b * pressure * slope_asinh_exp(direct_exponent(self, max(rate, &
+            least_rate), 1.0_wp, log(state%r)))
+    end function resistance_by_memory
 
     pure function traits(self)
         class(rate_state_law), intent(in) :: self

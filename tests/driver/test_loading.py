@@ -378,6 +378,20 @@ class ContinuousTime(Columns):
         self.summary(self.inertial.replace('alpha_t=1e10', 'alpha_t=1e12').replace('1e-5 /', '1e-7 /'), 'steps')
         self.assertAlmostEqual(self.events()[-1]['recurrence_time'], 3778.0755, delta=0.02)
 
+    def test_steps_of_a_rigid_contact_are_few_in_all_units(self):
+        # round-off in the derivatives of its rates would take four times as many, another number in other units
+        steps = []
+        for length, time in ((1.0, 1.0), (2.0**-29, 2.0**23), (2.0**20, 2.0**-14)):
+            rate = length / time
+            steps += self.summary(
+                f"&friction law='flash_heating', contact='rigid', alpha_n={62 / length}, alpha_t={514 / length}, a=0.009, b=0.0085, "
+                f'd_c={0.025 * length}, v0={0.036 * rate}, f0=0.58, f_w=0.17, v_w={8.7 * rate} /\n'
+                f'&slider mass={0.2 * time**2 / length}, stiffness={6.8 / length}, normal_traction=3.7 /\n'
+                f'&drive velocity={8.7 * rate}, 0, {-8.7 * rate}, duration={0.77 * time}, {0.39 * time}, {0.77 * time} /\n'
+                f'&time t_end={1.9 * time}, rtol=7e-6 /\n', 'steps')
+        self.assertLess(max(steps), 600)
+        self.assertLess(max(steps), 1.02 * min(steps))
+
     def test_a_rigid_contact_without_mass_is_the_quasi_dynamic_limit(self):
         text = ("&friction contact='rigid', law='rate_and_state', alpha_n=1e5, alpha_t=1e5, a=0.01, b=0.014, d_c=1e-3, v0=1e-6, f0=0.6, "
                 'theta_0=1e6 /\n&slider mass=0, stiffness=41.25, damping=5, normal_traction=100 /\n&drive velocity=1e-9 /\n'
