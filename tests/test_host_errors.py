@@ -10,11 +10,12 @@ import unittest
 
 CALL = """
 import ctypes, sys
-path, host, material, dtime, thickness, modulus, strain, *numbers = sys.argv[1:]
+path, host, material, components, states, dtime, thickness, modulus, strain, *numbers = sys.argv[1:]
+components, states = int(components), int(states)
 props = [float(number) for number in numbers]
 if host == 'calculix':
     props = [float(thickness), float(modulus), *props]
-Six, Full, State = ctypes.c_double * 6, ctypes.c_double * 36, ctypes.c_double * 8
+Six, Full, State = ctypes.c_double * 6, ctypes.c_double * 36, ctypes.c_double * states
 real, whole = (lambda x: ctypes.byref(ctypes.c_double(x))), (lambda k: ctypes.byref(ctypes.c_int(k)))
 unset, zero = (None if host == 'kratos' else real(0.0)), Full()
 time = (ctypes.c_double * 2)()
@@ -23,7 +24,7 @@ name = ctypes.create_string_buffer(material.encode().ljust(80))
 step = (ctypes.c_int * 4)(1, 1, 0, 0)
 ctypes.CDLL(path).umat_(
     Six(), State(), Full(), real(0.0), real(0.0), real(0.0), unset, unset and zero, unset and zero, unset, Six(), shear,
-    time, real(float(dtime)), unset, unset, unset, unset, name, whole(3), whole(3), whole(6), whole(8),
+    time, real(float(dtime)), unset, unset, unset, unset, name, whole(3), whole(3), whole(components), whole(states),
     (ctypes.c_double * len(props))(*props), whole(len(props)), unset and zero, unset and zero,
     None if host == 'kratos' else real(-1.0), unset, unset and zero, unset and zero, whole(7), whole(5),
     unset, unset, step, whole(1), ctypes.c_size_t(80))
@@ -34,9 +35,9 @@ RATE_AND_STATE = (4, 1000, 800, 0.01, 0.015, 1e-3, 1.0, 0.4)
 
 
 class Errors(unittest.TestCase):
-    def call(self, host, props, dtime=0.1, material='@ABAQUS_STICKSLIP', layer=(0.1, 1.0, 0.0)):
+    def call(self, host, props, dtime=0.1, material='@ABAQUS_STICKSLIP', layer=(0.1, 1.0, 0.0), sizes=(6, 8)):
         library = os.environ['STICKSLIP_' + host.upper()]
-        numbers = map(str, (dtime, *layer, *props))
+        numbers = map(str, (*sizes, dtime, *layer, *props))
         return subprocess.run([sys.executable, '-c', CALL, library, host, material, *numbers], text=True,
                               capture_output=True, check=False)
 
@@ -51,6 +52,15 @@ class Errors(unittest.TestCase):
             result = self.call('calculix', props, dtime)
             self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
             self.assertRegex(result.stdout, rf'\*ERROR in umat: stickslip, UMAT, code {code}: .*, element 7, point 5')
+
+    def test_sizes_are_those_of_the_host(self):
+        for host, place in (('calculix', 'stdout'), ('kratos', 'stderr')):
+            for sizes in ((6, 7), (4, 8)):   # components of the stress, numbers of the state
+                with self.subTest(host=host, sizes=sizes):
+                    result = self.call(host, RATE_AND_STATE, sizes=sizes)
+                    self.assertIn('code -1: ', getattr(result, place))
+                    self.assertNotIn('solved', result.stdout)
+            self.assertEqual(self.call(host, RATE_AND_STATE, sizes=(6, 12)).stdout, 'solved\n')
 
     def test_a_layer_refuses_what_the_friction_routine_does_not_see(self):
         nan = float('nan')

@@ -71,7 +71,6 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         call stop_with_cause(error_text('UMAT', status))
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
-    if (status < 0) return
     if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)
 
 contains

@@ -73,13 +73,10 @@ contains
         real(wp), intent(in), contiguous :: props(:)     !! constants of the friction routine
         real(wp), intent(inout) :: statev(statev_size)
         integer, intent(out) :: status                   !! of the friction routine
-        real(wp) :: state(statev_size), tau(2), by_du(2, 2), by_p(2)
+        real(wp) :: tau(2), by_du(2, 2), by_p(2)
 
-        state = statev
-        state(statev_u_n:statev_u_n + 2) = 0.0_wp
-        call host_tangential([0.0_wp, 0.0_wp], -1.0_wp, dt, props, state, tau, by_du, by_p, status)
+        call host_tangential([0.0_wp, 0.0_wp], -1.0_wp, dt, props, statev, tau, by_du, by_p, status)
         if (status < 0) return
-        statev = state
         statev(statev_u_n:statev_u_n + 2) = 0.0_wp
     end subroutine rest_out_of_contact
 

@@ -101,7 +101,6 @@ contains
         real(wp) :: tau(2), by_du(2, 2), by_p(2)
         integer :: status
 
-        if (.not. abs(statev(statev_status)) > 0.0_wp) return
         call friction_tangential([0.0_wp, 0.0_wp], -1.0_wp, 0.0_wp, props, statev, tau, by_du, &
             by_p, status)
     end subroutine forget_elastic

@@ -80,8 +80,6 @@ contains
         integer :: i, j
 
         at = components(ndi, nshr)
-        status = friction_bad_size
-        if (at%n == 0) return
         call read_layer(nprops, props, layer, status)
         if (status < 0) return
         status = friction_bad_increment
