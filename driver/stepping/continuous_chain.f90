@@ -29,7 +29,7 @@ module continuous_chain
         real(dp), allocatable, dimension(:, :) :: now, now_rates, then, then_rates
     contains
         procedure :: prepare, step, visit
-        procedure, private :: set_weights_of_all, try, finish
+        procedure, private :: set_weights_of_all, try, finish, jumps
     end type continuous_blocks
 
 contains
@@ -130,8 +130,8 @@ contains
             again = .true.
             self%dt = h * max(0.2_dp, 0.9_dp * error**(-0.25_dp))
             if (self%dt < max(self%dt_min, shortest * old%time)) then
-                report%status = merge(friction_no_convergence, friction_no_rate, &
-                    error < huge(error))
+                report%status = friction_no_convergence
+                if (self%jumps(old%time, error)) report%status = friction_no_rate
                 return
             end if
         end do
@@ -139,6 +139,21 @@ contains
         if (h < 0.99_dp * wanted) self%dt = max(self%dt, wanted)   ! the limit has cut it
         call self%finish(end, old, new)
     end subroutine step
+
+    !> Has slip no rate any more, or one that leaves its block far behind?
+    pure function jumps(self, t, error) result(yes)
+        class(continuous_blocks), intent(in) :: self
+        real(dp), intent(in) :: t       !! [T]
+        real(dp), intent(in) :: error   !! of the last attempt
+        logical :: yes
+        integer :: i
+
+        yes = .not. error < huge(error)
+        do i = 1, size(self%now, 2)
+            yes = yes .or. self%chain%blocks(min(i, size(self%chain%blocks)))%runs_away(t, &
+                self%now_rates(:, i), maxval(abs(self%drive%velocity)))
+        end do
+    end function jumps
 
     !> What the error of each unknown is compared with: its own size, but not less than the
     !> amplitude of the contact's ringing.

@@ -285,8 +285,8 @@ contains
                     self%dt = 1.0e3_dp * shortest * old%time
                     cycle
                 end if
-                report%status = friction_no_convergence
-                if (self%jumped .or. runs_away(self)) report%status = friction_no_rate
+                report%status = merge(friction_no_rate, friction_no_convergence, jumps(self, &
+                    old%time))
                 return
             end if
         end do
@@ -299,24 +299,23 @@ contains
         call self%choose_method(tried)
         self%y = tried%y
         self%first = tried%last
-        if (self%equations%follows_traction()) self%y(velocity) = self%drive%drive_velocity(end, &
-            piece) - tried%last(extension)
+        if (self%equations%follows_traction()) self%y(velocity) = self%equations%sense_of( &
+            self%y(elastic)) * self%first(slip)   ! velocities of less than round-off of the drive's
         self%known = self%equations%steady .and. .not. self%implicit .and. tried%switch == 0
         if (tried%switch > 0) call self%switch(end, tried%switch)
         call self%fill(end, piece, old, new)
     end subroutine step
 
-    !> Does the surface slip far faster than the block moves? Then friction that falls lets the
-    !> contact spring unload by itself, ever faster, without inertia.
-    pure function runs_away(self) result(yes)
+    !> Has slip no rate any more, or one that leaves its block far behind?
+    pure function jumps(self, t) result(yes)
         class(continuous), intent(in) :: self
-        real(dp), parameter :: far = 100.0_dp
+        real(dp), intent(in) :: t   !! [T]
         logical :: yes
 
-        yes = self%known .and. self%system%mass > 0.0_dp .and. .not. self%equations%rigid
-        if (yes) yes = self%first(slip) > far * max(abs(self%y(velocity)), &
+        yes = self%jumped
+        if (self%known) yes = yes .or. self%equations%runs_away(t, self%first, &
             maxval(abs(self%drive%velocity)))
-    end function runs_away
+    end function jumps
 
     !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
     !> can tell: friction falls to what balances the drive spring, or changes its side, at once.
@@ -823,8 +822,11 @@ contains
                 call eq%rates(t, y, dy, failed)
             end if
             call fill_block(eq, self%system, t, y, dy, 1, old, new)
-            if (.not. eq%mass > 0.0_dp) new%v(1) = self%drive%drive_velocity(t, piece) &
-                - dy(extension)
+            if (.not. eq%mass > 0.0_dp) then
+                new%v(1) = self%drive%drive_velocity(t, piece) - dy(extension)
+                if (eq%rigid .and. eq%phase /= phase_open) new%v(1) = &
+                    eq%sense_of(y(extension)) * dy(slip)   ! slow beside the drive, too
+            end if
             new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
         end associate
     end subroutine fill

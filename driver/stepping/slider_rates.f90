@@ -51,10 +51,11 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs, &
-            follows_traction, sense_of, follows_share
+            follows_traction, sense_of, follows_share, runs_away
     end type slider_equations
 
-    !> Of a contact with a damper: `push - drag v` is its traction at the slip rate v.
+    !> Of a contact with a damper, or on a block with one and without mass: `push - drag v` is its
+    !> traction at the slip rate v.
     type :: damper_balance
         real(dp) :: sense   !! of the slip in x
         real(dp) :: push    !! >= 0 [F/L^2]
@@ -336,7 +337,9 @@ contains
         v = 0.0_dp
         call self%surface%resistance_at(state, 0.0_dp, pressure, resistance, by_rate)
         if (balance%push <= min(resistance, self%surface%tau_max)) return
-        if (balance%push > self%surface%tau_max .and. balance%drag > 0.0_dp) then
+        if (balance%push > self%surface%tau_max) then
+            failed = .not. balance%drag > 0.0_dp
+            if (failed) return
             capped = (balance%push - self%surface%tau_max) / balance%drag
             call self%surface%resistance_at(state, capped, pressure, resistance, by_rate)
             v = capped
@@ -424,9 +427,11 @@ contains
             if (.not. self%mass > 0.0_dp) then
                 failed = self%surface%traits%onset /= onset_gradual
                 if (failed) return
-                contact%velocity = self%sense_of(pull) * creep(self%surface, state, &
-                    abs(pull) / self%area, self%damping / self%area, pressure)
-                sense = self%sense_of(contact%velocity)
+                sense = self%sense_of(pull)
+                call slip_of(self, state, pressure, damper_balance(sense, abs(pull) / self%area, &
+                    self%damping / self%area), contact%slip, failed)
+                if (failed) return
+                contact%velocity = sense * contact%slip
             end if
             contact%slip = sense * contact%velocity
             call self%surface%resistance_at(state, max(0.0_dp, contact%slip), pressure, &
@@ -439,6 +444,24 @@ contains
         call take_memory(self, self%surface%state_rates(state, load, contact%slip), state, &
             contact)
     end subroutine rigid_contact
+
+    !> Does the surface slip far faster than the block moves? Then friction that falls lets the
+    !> contact spring unload by itself, ever faster, without inertia. A block without mass and
+    !> damper moves with the surface: then, far faster than the drive.
+    pure function runs_away(self, t, dy, fastest) result(yes)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t              !! [T]
+        real(dp), intent(in) :: dy(unknowns)   !! rates there
+        real(dp), intent(in) :: fastest        !! velocity of the drive in the programme [L/T]
+        logical :: yes
+        real(dp), parameter :: far = 100.0_dp
+        real(dp) :: moved, v_drive, pressure, pressure_rate
+
+        call inputs(self, t, v_drive, pressure, pressure_rate)
+        moved = fastest
+        if (max(self%mass, self%damping) > 0.0_dp) moved = max(moved, abs(v_drive - dy(extension)))
+        yes = dy(slip) > far * moved .and. .not. self%rigid
+    end function runs_away
 
     !> Is the velocity of a block on a rigid contact that of its slip under the traction? Then that
     !> is an unknown, in the place of the elastic displacement: slip rates go through decades.
