@@ -278,6 +278,7 @@ contains
         changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
         contact%ratio = 0.0_dp
+        if (.not. self%follows_share()) return
         if (contact%slip > 0.0_dp .or. self%phase == phase_stick) contact%ratio = changes%r
     end subroutine damped_contact
 
@@ -510,7 +511,7 @@ contains
         real(dp) :: v   !! >= 0 [L/T]
         integer, parameter :: most_iterations = 200
         type(load_rates) :: load
-        real(dp) :: tau, resistance, by_rate, misfit
+        real(dp) :: tau, resistance, by_rate, change
         logical :: jumps
         integer :: i
 
@@ -520,14 +521,17 @@ contains
             tau = min(tau, resistance)
         end if
         load = load_rates(tau, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+        call surface%slip_rate(state, load, v, jumps)
+        if (.not. drag > 0.0_dp) return
         do i = 1, most_iterations
-            call surface%slip_rate(state, load, v, jumps)
-            if (.not. drag > 0.0_dp) exit
             call surface%resistance_at(state, v, pressure, resistance, by_rate)
-            misfit = push - drag * v - load%traction
-            load%traction = load%traction + misfit / (1.0_dp + drag / by_rate)
-            if (abs(misfit) <= 4.0_dp * epsilon(misfit) * push) exit
+            change = (push - drag * v - load%traction) / (1.0_dp + drag / by_rate)
+            load%traction = load%traction + change
+            call surface%slip_rate(state, load, v, jumps)
+            if (abs(change) <= 4.0_dp * epsilon(change) * load%traction) exit
         end do
+        ! of the two, what round-off of the traction changes less
+        if (drag > by_rate) v = max(0.0_dp, push - load%traction) / drag
     end function creep
 
     !> What the law knows of the contact.

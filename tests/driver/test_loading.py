@@ -378,17 +378,34 @@ class ContinuousTime(Columns):
         self.summary(self.inertial.replace('alpha_t=1e10', 'alpha_t=1e12').replace('1e-5 /', '1e-7 /'), 'steps')
         self.assertAlmostEqual(self.events()[-1]['recurrence_time'], 3778.0755, delta=0.02)
 
-    def test_steps_of_a_rigid_contact_are_few_in_all_units(self):
-        # round-off in the derivatives of its rates would take four times as many, another number in other units
+    def steps_in_units(self, friction, slider, drive, time):
+        """Numbers of steps of a run in three systems of units; keys with the powers of length and time in their units."""
         steps = []
-        for length, time in ((1.0, 1.0), (2.0**-29, 2.0**23), (2.0**20, 2.0**-14)):
-            rate = length / time
-            steps += self.summary(
-                f"&friction law='flash_heating', contact='rigid', alpha_n={62 / length}, alpha_t={514 / length}, a=0.009, b=0.0085, "
-                f'd_c={0.025 * length}, v0={0.036 * rate}, f0=0.58, f_w=0.17, v_w={8.7 * rate} /\n'
-                f'&slider mass={0.2 * time**2 / length}, stiffness={6.8 / length}, normal_traction=3.7 /\n'
-                f'&drive velocity={8.7 * rate}, 0, {-8.7 * rate}, duration={0.77 * time}, {0.39 * time}, {0.77 * time} /\n'
-                f'&time t_end={1.9 * time}, rtol=7e-6 /\n', 'steps')
+        for length, second in ((1.0, 1.0), (2.0**-29, 2.0**23), (2.0**20, 2.0**-14)):
+            def group(name, keys):
+                return f'&{name} ' + ', '.join(f'{key}={value}' if isinstance(value, str) else f'{key}=' + ', '.join(
+                    repr(number * length**powers[0] * second**powers[1]) for number in value)
+                    for key, (value, *powers) in keys.items()) + ' /\n'
+            steps += self.summary(''.join(map(group, ('friction', 'slider', 'drive', 'time'), (friction, slider, drive, time))), 'steps')
+        return steps
+
+    def test_steps_are_few_in_all_units(self):
+        # a rigid contact: round-off in the derivatives of its rates would take four times as many, another number in other units
+        steps = self.steps_in_units(
+            {'law': ("'flash_heating'",), 'contact': ("'rigid'",), 'alpha_n': ([62], -1, 0), 'alpha_t': ([514], -1, 0), 'a': ([0.009], 0, 0),
+             'b': ([0.0085], 0, 0), 'd_c': ([0.025], 1, 0), 'v0': ([0.036], 1, -1), 'f0': ([0.58], 0, 0), 'f_w': ([0.17], 0, 0),
+             'v_w': ([8.7], 1, -1)},
+            {'mass': ([0.2], -1, 2), 'stiffness': ([6.8], -1, 0), 'normal_traction': ([3.7], 0, 0)},
+            {'velocity': ([8.7, 0, -8.7], 1, -1), 'duration': ([0.77, 0.39, 0.77], 0, 1)}, {'t_end': ([1.9], 0, 1), 'rtol': ([7e-6], 0, 0)})
+        self.assertLess(max(steps), 600)
+        self.assertLess(max(steps), 1.02 * min(steps))
+        # a damper beside the contact spring: theta, which grows as the pressure vanishes, is known to its own digits, no more
+        steps = self.steps_in_units(
+            {'law': ("'linker_dieterich'",), 'alpha_n': ([47], -1, 0), 'alpha_t': ([44], -1, 0), 'a': ([0.019], 0, 0), 'b': ([0.0192], 0, 0),
+             'd_c': ([0.06], 1, 0), 'v0': ([0.06], 1, -1), 'f0': ([0.66], 0, 0), 'alpha': ([0.168], 0, 0), 'eta_t': ([33], -1, 1)},
+            {'mass': ([0.023], -1, 2), 'stiffness': ([0.21], -1, 0), 'normal_traction': ([0.8], 0, 0)},
+            {'velocity': ([0.067], 1, -1), 'normal_amplitude': ([0.78], 0, 0), 'normal_frequency': ([0.016], 0, -1)},
+            {'t_end': ([150], 0, 1), 'rtol': ([9e-5], 0, 0)})
         self.assertLess(max(steps), 600)
         self.assertLess(max(steps), 1.02 * min(steps))
 
