@@ -45,7 +45,7 @@ submodule(friction_mod) friction_batch
         end subroutine batch_kernel
 
         !> See module friction_constants_kernel.
-        pure subroutine constants_kernel(source, stride, count, props, constants, left) &
+        pure subroutine constants_kernel(source, stride, count, props, constants, options, left) &
             bind(C, name='stickslip_constants_kernel')
             import :: c_double, c_int, c_int64_t, constants_source, lanes, n_constants
             implicit none
@@ -54,7 +54,7 @@ submodule(friction_mod) friction_batch
             integer(c_int), value, intent(in) :: count
             real(c_double), intent(in) :: props(stride, *)
             real(c_double), intent(out) :: constants(lanes, n_constants)
-            integer(c_int), intent(out) :: left(lanes)
+            integer(c_int), intent(out) :: options, left(lanes)
         end subroutine constants_kernel
 
         !> See module friction_subloading_kernel.
@@ -190,7 +190,7 @@ contains
             if (status >= 0) exit
         end do
         if (status < 0) return   ! point by point, they all say so
-        call plan_lanes(sizes%nprops, props(row, :), rows > 1, this%plan)
+        call plan_lanes(sizes%nprops, props(row, :), this%plan)
         if (.not. dtime < most) this%plan%kind = lane_none
         if (this%plan%needs_time .and. .not. dtime > 1.0_wp / most) this%plan%kind = lane_none
         if (this%plan%damping > 0.0_wp .and. dtime > 0.0_wp) this%viscous = this%plan%damping &
@@ -215,7 +215,7 @@ contains
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(inout) :: status(this%points)
         real(wp), target :: room(columns_room)
-        integer(c_int) :: left(lanes)
+        integer(c_int) :: options, left(lanes)
         integer(int64) :: i
         integer :: start
 
@@ -227,13 +227,13 @@ contains
         else if (this%rows > 1) then
             start = line_start(room)
             call constants_kernel(this%plan%source, this%rows, int(last - first, c_int) + 1_c_int, &
-                props(first, 1), room(start), left)
-            call update_lanes(this, first, last, room(start), du, props, left, statev, traction, &
-                tangent, status)
+                props(first, 1), room(start), options, left)
+            call update_lanes(this, first, last, room(start), options, du, props, left, statev, &
+                traction, tangent, status)
         else
             left = 0
-            call update_lanes(this, first, last, this%room(this%start), du, props, left, statev, &
-                traction, tangent, status)
+            call update_lanes(this, first, last, this%room(this%start), this%plan%options, du, &
+                props, left, statev, traction, tangent, status)
         end if
     end subroutine update_range
 
@@ -246,11 +246,12 @@ contains
     end function line_start
 
     !> The same by lanes; points that they leave go one by one.
-    subroutine update_lanes(this, first, last, constants, du, props, left, statev, traction, &
-        tangent, status)
+    subroutine update_lanes(this, first, last, constants, options, du, props, left, statev, &
+        traction, tangent, status)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
         real(wp), intent(in) :: constants(lanes, n_constants)
+        integer(c_int), intent(in) :: options   !! sum of those that a point has
         real(wp), intent(in) :: du(this%points, this%ndir), props(this%rows, this%nprops)
         integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
         real(wp), intent(inout) :: statev(this%points, this%nstatv)
@@ -262,11 +263,12 @@ contains
 
         status(first:last) = friction_ok
         if (last - first == lanes - 1 .and. sum(left) == 0) then
-            call call_kernel(this, this%points, constants, du(first, 1), statev(first, 1), &
-                traction(first, 1), tangent(first, 1, 1), left, n_left)
+            call call_kernel(this, this%points, constants, options, du(first, 1), &
+                statev(first, 1), traction(first, 1), tangent(first, 1, 1), left, n_left)
             if (n_left == 0) return
         end if
-        call update_copies(this, first, last, constants, du, left, statev, traction, tangent)
+        call update_copies(this, first, last, constants, options, du, left, statev, traction, &
+            tangent)
         do i = first, last
             if (left(i - first + 1) > 0) call update_point_of(this, i, du, props, statev, &
                 traction, &
@@ -274,10 +276,12 @@ contains
         end do
     end subroutine update_lanes
 
-    subroutine call_kernel(this, stride, constants, du, statev, traction, tangent, left, n_left)
+    subroutine call_kernel(this, stride, constants, options, du, statev, traction, tangent, left, &
+        n_left)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: stride   !! from one component to the next
         real(wp), intent(in) :: constants(lanes, n_constants), du(stride, *)
+        integer(c_int), intent(in) :: options
         real(wp), intent(inout) :: statev(stride, *), traction(stride, *)
         real(wp), intent(inout) :: tangent(stride, this%ndir, *)
         integer(c_int), intent(out) :: left(lanes), n_left
@@ -286,26 +290,29 @@ contains
             call subloading_kernel(stride, du, this%dtime, this%plain_constants, statev, traction, &
                 tangent, left, n_left)
         else
-            call batch_kernel(task_of(this, stride), constants, du, statev, traction, tangent, &
-                left, n_left)
+            call batch_kernel(task_of(this, stride, options), constants, du, statev, traction, &
+                tangent, left, n_left)
         end if
     end subroutine call_kernel
 
-    pure function task_of(this, stride) result(task)
+    pure function task_of(this, stride, options) result(task)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: stride   !! from one component to the next
+        integer(c_int), intent(in) :: options
         type(block_task) :: task
 
         task = block_task(stride, this%plan%kind, int(this%ndir, c_int), &
-            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), this%plan%options, this%dtime, &
+            merge(this%plan%source%n_own, 0_c_int, this%rows > 1), options, this%dtime, &
             this%plan%cohesion, this%viscous)
     end function task_of
 
     !> The same through a copy, filled up to a block, without the points that the kernel leaves.
-    subroutine update_copies(this, first, last, constants, du, left, statev, traction, tangent)
+    subroutine update_copies(this, first, last, constants, options, du, left, statev, traction, &
+        tangent)
         type(batch), intent(in) :: this
         integer(int64), intent(in) :: first, last
         real(wp), intent(in) :: constants(lanes, n_constants)
+        integer(c_int), intent(in) :: options
         real(wp), intent(in) :: du(this%points, this%ndir)
         integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point known to be left, else 0
         real(wp), intent(inout) :: statev(this%points, this%nstatv)
@@ -336,8 +343,8 @@ contains
                 statev_(j, statev_mu) = this%plan%source%value(c_mu_0)
                 statev_(j, statev_r) = this%plan%source%value(c_r_0)
             end do
-            call call_kernel(this, int(lanes, int64), constants_, du_, statev_, traction_, &
-                tangent_, more, n_left)
+            call call_kernel(this, int(lanes, int64), constants_, options, du_, statev_, &
+                traction_, tangent_, more, n_left)
             if (n_left == 0) exit
             left = max(left, more)
         end do

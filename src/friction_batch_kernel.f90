@@ -372,7 +372,8 @@ contains
         end do
     end subroutine clear
 
-    !> How the spring unloads: by alpha_t, where one coefficient counts.
+    !> How the spring unloads: by alpha_t, where one coefficient counts. That a neighbour has two
+    !> changes no bit.
     subroutine find_stiffness(task, constants, trial)
         type(block_task), intent(in) :: task
         real(wp), intent(in) :: constants(lanes, n_constants)
@@ -386,7 +387,10 @@ contains
         else
             do i = 1, lanes
                 trial%length(i) = max(sqrt(trial%q1(i)**2 + trial%q2(i)**2), least_length)
-                trial%stiffness(i) = trial%rest%traction(i) / trial%length(i)
+                trial%stiffness(i) = max(trial%rest%traction(i), least) / trial%length(i)
+                if (abs(constants(i, c_squeeze) - 1.0_wp) <= 0.0_wp) then
+                    trial%stiffness(i) = constants(i, c_alpha_t)
+                end if
             end do
         end if
     end subroutine find_stiffness
@@ -471,6 +475,7 @@ contains
             do k = c_own, c_own + task%n_own - 1
                 call pack_column(packed%n, place, constants(:, k), packed_constants(:, k))
             end do
+            packed_constants(:packed%n, c_cap) = no_cap
             if (iand(task%options, with_cap) > 0) then
                 call pack_column(packed%n, place, constants(:, c_cap), packed_constants(:, c_cap))
             end if
@@ -680,11 +685,8 @@ contains
         real(wp) :: closed, mean, mu, r, slip, share, resistance, d_slip, d_pressure, slides
         integer :: i
 
-        if (iand(task%options, with_two_coefficients) > 0) then
-            call turn_direction(constants, trial, slid, answer)
-        else
-            call find_direction(constants, trial, slid, answer)
-        end if
+        call find_direction(constants, trial, slid, answer)
+        if (iand(task%options, with_two_coefficients) > 0) call find_work(constants, trial, answer)
         !GCC$ ivdep
         do i = 1, lanes
             slides = 0.0_wp
@@ -726,57 +728,47 @@ contains
         call write_answer(task, constants, trial, answer, traction, tangent)
     end subroutine finish
 
-    !> Direction and coupling of an isotropic surface. Quotients of all points, though only those
-    !> that slide need them: a quotient under a condition would be one of zeros for the others.
+    !> Direction and coupling. Quotients of all points, though only those that slide need them: a
+    !> quotient under a condition would be one of zeros for the others.
     pure subroutine find_direction(constants, trial, slid, answer)
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
         type(answer_block), intent(out) :: answer
-        real(wp) :: force, total, slides, shared
+        real(wp) :: force, total, slides, along, shared
         integer :: i
 
         do i = 1, lanes
             force = max(trial%rest%traction(i), least)
-            total = max(constants(i, c_alpha_t) + slid%d_slip(i), epsilon(1.0_wp) &
-                * constants(i, c_alpha_t))
+            total = max(trial%stiffness(i) + slid%d_slip(i), epsilon(1.0_wp) * trial%stiffness(i))
             shared = 1.0_wp / (force * total)   ! one division for two
             slides = merge(constants(i, c_alpha_t), 0.0_wp, trial%slides(i) > 0)
+            along = merge(trial%stiffness(i), 0.0_wp, trial%slides(i) > 0)
             answer%per_traction(i) = total * shared
             answer%coupling(i) = slides * force * shared
-            answer%t1(i) = trial%q1(i) * (slides * answer%per_traction(i))
-            answer%t2(i) = trial%q2(i) * (slides * answer%per_traction(i))
+            answer%t1(i) = trial%q1(i) * (along * answer%per_traction(i))
+            answer%t2(i) = trial%q2(i) * (along * answer%per_traction(i))
             answer%work_ratio(i) = 1.0_wp
             answer%squeezed(i) = 0.0_wp
         end do
     end subroutine find_direction
 
-    !> The same of a surface with two friction coefficients that slides along the trial traction.
-    pure subroutine turn_direction(constants, trial, slid, answer)
+    !> What a surface with two friction coefficients, which slides along the trial traction, adds.
+    pure subroutine find_work(constants, trial, answer)
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(trial_block), intent(in) :: trial
-        type(slide_block), intent(in) :: slid
-        type(answer_block), intent(out) :: answer
-        real(wp) :: length, force, total, slides, shared, per_length
+        type(answer_block), intent(inout) :: answer
         integer :: i
 
         do i = 1, lanes
-            slides = merge(1.0_wp, 0.0_wp, trial%slides(i) > 0)
-            length = trial%length(i)
-            force = max(trial%rest%traction(i), smallest)
-            ! length times the sum of stiffnesses
-            total = max(force + slid%d_slip(i) * length, epsilon(1.0_wp) * force)
-            shared = 1.0_wp / (force * length)   ! one division for two
-            answer%per_traction(i) = length * shared
-            per_length = slides * force * shared
-            answer%t1(i) = trial%q1(i) * per_length
-            answer%t2(i) = trial%q2(i) * per_length
-            answer%work_ratio(i) = constants(i, c_alpha_t) * length * answer%per_traction(i)
-            answer%squeezed(i) = slides * (constants(i, c_squeeze)**2 - 1.0_wp) &
-                * answer%work_ratio(i)
-            answer%coupling(i) = slides * constants(i, c_alpha_t) * length / total
+            if (abs(constants(i, c_squeeze) - 1.0_wp) > 0.0_wp) then
+                answer%work_ratio(i) = constants(i, c_alpha_t) * trial%length(i) &
+                    * answer%per_traction(i)
+            end if
+            answer%squeezed(i) = merge(constants(i, c_squeeze)**2 - 1.0_wp, 0.0_wp, &
+                trial%slides(i) > 0) * answer%work_ratio(i)
         end do
-    end subroutine turn_direction
+    end subroutine find_work
 
     !> Where nothing slides, `t1` and `t2` are 0 and `stuck` is 1, else 0: with their squares this
     !> is 1 less the other's square, without a difference that would leave round-off of a stiff

@@ -3,7 +3,7 @@
 module friction_constants_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : c_cap, c_mu_0, c_own, c_squeeze, constants_source, lanes, &
-        n_constants, no_cap
+        n_constants, no_cap, with_cap, with_two_coefficients
     implicit none
     private
 
@@ -18,21 +18,19 @@ contains
 
     !> The constants of points 1 to `count`, and of lanes without a point those of the source. A
     !> point that is left has those of the source, too; the routine for one point then judges it.
-    pure subroutine copy_constants(source, stride, count, props, constants, left) &
+    pure subroutine copy_constants(source, stride, count, props, constants, options, left) &
         bind(C, name='stickslip_constants_kernel')
         type(constants_source), intent(in) :: source
         integer(c_int64_t), value, intent(in) :: stride   !! distance of constants, `count` or more
         integer(c_int), value, intent(in) :: count        !! points, `lanes` at most
         real(wp), intent(in) :: props(stride, *)
         real(wp), intent(out) :: constants(lanes, n_constants)
+        integer(c_int), intent(out) :: options            !! sum of those that a point has
         integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
         integer(c_int64_t) :: wrong(lanes), any_wrong
         integer :: i, k
 
-        wrong = 0
-        do k = 1, source%n_choices
-            call compare(count, props(:count, source%choice(k)), source%chosen(k), wrong)
-        end do
+        call compare(source, stride, count, props, wrong)
         do k = 1, c_own + source%n_own - 1
             if (source%place(k) == 0 .or. count < lanes) constants(:, k) = source%value(k)
             if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
@@ -42,9 +40,9 @@ contains
             call follow_rules(source, k, constants, wrong)
         end do
         constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
-        if (source%place(c_cap) > 0) where (constants(:, c_cap) <= 0.0_wp) &
-            constants(:, c_cap) = no_cap
-        if (source%place(c_squeeze) > 0) call invert(constants(:, c_squeeze))
+        options = 0
+        if (source%place(c_cap) > 0) call find_caps(constants(:, c_cap), options)
+        if (source%place(c_squeeze) > 0) call find_ratios(constants(:, c_squeeze), options)
         left = 0
         any_wrong = 0
         do i = 1, lanes
@@ -82,18 +80,34 @@ contains
         end do
     end subroutine copy_column
 
-    !> A constant that has to be the same at all points. Compares bits: silent where a comparison
-    !> with NaN raises an exception.
-    pure subroutine compare(count, from, chosen, wrong)
+    !> Constants that have to be the same at all points, in one pass. Compares bits: silent where a
+    !> comparison with NaN raises an exception.
+    pure subroutine compare(source, stride, count, props, wrong)
+        type(constants_source), intent(in) :: source
+        integer(c_int64_t), intent(in) :: stride
         integer, intent(in) :: count
-        real(wp), intent(in) :: from(count), chosen
-        integer(c_int64_t), intent(inout) :: wrong(lanes)
+        real(wp), intent(in) :: props(stride, *)
+        integer(c_int64_t), intent(out) :: wrong(lanes)
         integer :: i
 
-        do i = 1, count
-            wrong(i) = ior(wrong(i), ieor(bits(from(i)), bits(chosen)))
-        end do
+        wrong = 0
+        associate (at => source%choice, value => source%chosen)
+            do i = 1, count
+                wrong(i) = ior(ior(ior(differ(props(i, at(1)), value(1)), &
+                    differ(props(i, at(2)), value(2))), &
+                    ior(differ(props(i, at(3)), value(3)), differ(props(i, at(4)), value(4)))), &
+                    ior(differ(props(i, at(5)), value(5)), differ(props(i, at(6)), value(6))))
+            end do
+        end associate
     end subroutine compare
+
+    !> 0 for the same number.
+    elemental function differ(x, y)
+        real(wp), intent(in) :: x, y
+        integer(c_int64_t) :: differ
+
+        differ = ieor(bits(x), bits(y))
+    end function differ
 
     !> Rules of module friction_law_constants that lanes can break although their constants are of
     !> ordinary size.
@@ -111,15 +125,39 @@ contains
             wrong = 1
     end subroutine follow_rules
 
-    !> mu_1/mu_2 from mu_2/mu_1, where 0 stands for 1.
-    pure subroutine invert(ratio)
-        real(wp), intent(inout) :: ratio(lanes)
+    !> Shear caps, where 0 stands for none, and whether a point has one.
+    pure subroutine find_caps(cap, options)
+        real(wp), intent(inout) :: cap(lanes)
+        integer(c_int), intent(inout) :: options
+        integer(c_int64_t) :: others
         integer :: i
 
+        others = 0
         do i = 1, lanes
-            ratio(i) = 1.0_wp / merge(ratio(i), 1.0_wp, ratio(i) > 0.0_wp)
+            cap(i) = merge(cap(i), no_cap, cap(i) > 0.0_wp)
+            others = ior(others, differ(cap(i), no_cap))
         end do
-    end subroutine invert
+        if (others /= 0) options = options + with_cap
+    end subroutine find_caps
+
+    !> mu_1/mu_2 from mu_2/mu_1, where 0 stands for 1, and whether a point has two coefficients.
+    pure subroutine find_ratios(ratio, options)
+        real(wp), intent(inout) :: ratio(lanes)
+        integer(c_int), intent(inout) :: options
+        integer(c_int64_t) :: others
+        integer :: i
+
+        others = 0
+        do i = 1, lanes
+            ratio(i) = merge(ratio(i), 1.0_wp, ratio(i) > 0.0_wp)
+            others = ior(others, differ(ratio(i), 1.0_wp))
+        end do
+        if (others == 0) return
+        options = options + with_two_coefficients
+        do i = 1, lanes
+            ratio(i) = 1.0_wp / ratio(i)
+        end do
+    end subroutine find_ratios
 
     !> A number as an integer, which orders those above zero as they are: silent where a comparison
     !> with NaN raises an exception.

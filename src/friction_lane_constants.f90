@@ -32,7 +32,7 @@ module friction_lane_constants
     !> The lanes of a law and its options, and how its constants become theirs.
     type :: lane_plan
         integer(c_int) :: kind = lane_none   !! see module friction_lane_block
-        integer(c_int) :: options = 0   !! sum of those that a point has
+        integer(c_int) :: options = 0   !! sum of those that the point of the plan has
         logical :: needs_time = .false. !! no increment without time
         real(wp) :: cohesion = 0.0_wp   !! of all points that lanes take [F/L^2]
         real(wp) :: damping = 0.0_wp    !! likewise [F T/L^3]
@@ -49,10 +49,9 @@ module friction_lane_constants
 contains
 
     !> The lanes of one point's law and options: `lane_none` if it has none.
-    pure subroutine plan_lanes(nprops, props, varied, plan)
+    pure subroutine plan_lanes(nprops, props, plan)
         integer, intent(in) :: nprops             !! size
         real(wp), intent(in) :: props(nprops)     !! finite
-        logical, intent(in) :: varied             !! other points have other constants
         type(lane_plan), intent(out) :: plan
         type(law_storage), target :: storage
         class(named_law), pointer :: own
@@ -76,11 +75,9 @@ contains
         plan%source%value(c_cap) = no_cap
         if (surface%tau_max < most) plan%source%value(c_cap) = surface%tau_max
         plan%source%value(c_squeeze) = options%plane%squeeze
-        if (surface%tau_max < most .or. (varied .and. option <= nprops)) plan%options = with_cap
-        if (abs(options%plane%squeeze - 1.0_wp) > 0.0_wp .or. (varied .and. option + 1 &
-            <= nprops)) then
-            plan%options = plan%options + with_two_coefficients
-        end if
+        if (surface%tau_max < most) plan%options = with_cap
+        if (abs(options%plane%squeeze - 1.0_wp) > 0.0_wp) plan%options = plan%options &
+            + with_two_coefficients
         if (option <= nprops) plan%source%place(c_cap) = option
         if (option + 1 <= nprops) plan%source%place(c_squeeze) = option + 1
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
@@ -149,8 +146,8 @@ contains
                 return
             end if
             n = n + 1_c_int
-            plan%source%choice(n) = int(place, c_int)
-            plan%source%chosen(n) = value
+            plan%source%choice(n:) = int(place, c_int)   ! those without one repeat the last
+            plan%source%chosen(n:) = value
         end associate
     end subroutine must_stay
 

@@ -53,7 +53,7 @@ module friction_lane_block
         integer(c_int) :: ndir         !! components of du: 2 or 3
         integer(c_int) :: n_own        !! constants of the law's own, of each point; 0 where all
                                        !! points share them
-        integer(c_int) :: options      !! sum of those that a point has
+        integer(c_int) :: options      !! sum of those that a point of the block has
         real(c_double) :: dt           !! [T]
         real(c_double) :: cohesion     !! of all points [F/L^2]
         real(c_double) :: viscous      !! stiffness of the damper of all points, eta_t/dt [F/L^3]
@@ -67,8 +67,10 @@ module friction_lane_block
         real(c_double) :: value(n_constants) = 0.0_c_double
         real(c_double) :: lower(n_constants) = 0.0_c_double   !! least value
         real(c_double) :: upper(n_constants) = huge(1.0_c_double)   !! largest value
-        integer(c_int) :: n_choices = 0          !! constants that have to be what they are here
-        integer(c_int) :: choice(6) = 0          !! their places in `props`
+        integer(c_int) :: n_choices = 0          !! constants that have to be what they are here,
+                                                 !! one at least
+        integer(c_int) :: choice(6) = 0          !! their places in `props`; the last one fills
+                                                 !! what is left
         real(c_double) :: chosen(6) = 0.0_c_double   !! and values
     end type constants_source
 

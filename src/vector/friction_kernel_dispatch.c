@@ -18,7 +18,7 @@ slip_rate_kernel stickslip_slip_rate_kernel, stickslip_slip_rate_kernel_sse2, st
     stickslip_slip_rate_kernel_avx512;
 
 typedef void constants_kernel(const void *source, int64_t stride, int count, const double *props, double *constants,
-                              int *left);
+                              int *options, int *left);
 
 constants_kernel stickslip_constants_kernel, stickslip_constants_kernel_sse2, stickslip_constants_kernel_avx2,
     stickslip_constants_kernel_avx512;
@@ -77,11 +77,11 @@ void stickslip_points_kernel_out(const double *statev_block, const double *tract
 }
 
 void stickslip_constants_kernel(const void *source, int64_t stride, int count, const double *props, double *constants,
-                                int *left)
+                                int *options, int *left)
 {
     static constants_kernel *const copies[] = {stickslip_constants_kernel_sse2, stickslip_constants_kernel_avx2,
                                                stickslip_constants_kernel_avx512};
-    copies[instructions()](source, stride, count, props, constants, left);
+    copies[instructions()](source, stride, count, props, constants, options, left);
 }
 
 void stickslip_slip_rate_kernel(int evolution, double damping, int64_t stride, const double *tau,
