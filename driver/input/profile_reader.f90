@@ -158,9 +158,9 @@ contains
         if (.not. sound) return
         map%x = nodes_in(read_in, axes(1))
         map%z = nodes_in(read_in, axes(2))
-        if (read_in%column(trim(axes(2))) == 0) call file%reject(group, key, &
-            "its file has no column '" // trim(axes(2)) // "'")
-        if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
+        if (read_in%column(trim(axes(2))) == 0) then
+            call file%reject(group, key, "its file has no column '" // trim(axes(2)) // "'")
+        else if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
             if (axes(1) == '') then
                 call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
             else

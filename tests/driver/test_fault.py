@@ -556,6 +556,8 @@ class NetCDF(FaultTest):
             name = self.write(SMALL.replace('@a.csv', '@a.nc'))
             done = self.run_fault(name, expect=2)
             self.assertIn(told, done.stderr)
+            if 'no column' in told:
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)   # and nothing that follows from it
             checked = subprocess.run([PROGRAM, 'check', name], cwd=self.place, capture_output=True, text=True)
             self.assertEqual((checked.returncode, checked.stderr), (2, done.stderr))
         (self.place / 'a.nc').write_text(A)
