@@ -24,6 +24,7 @@ module run_outcome
         real(dp), allocatable :: onsets(:)         !! of the events [T]
         integer :: steps = 0                       !! taken
         integer :: iterations = 0, most_iterations = 0
+        logical :: in_rates = .false.              !! iterations are evaluations of rates
         integer :: rejected = 0                    !! steps tried in vain
         integer :: snap_backs = 0                  !! steps that saw several equilibria
         real(dp) :: time = 0.0_dp                  !! reached [T]

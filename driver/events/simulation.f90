@@ -160,6 +160,7 @@ contains
         result%snap_backs = live%snap_backs
         result%iterations = live%steps%iterations
         result%most_iterations = live%steps%most_iterations
+        result%in_rates = live%steps%in_rates
         result%rejected = live%steps%rejected
         result%onsets = live%slip_events%onsets
         result%pieces = live%slip_events%pieces

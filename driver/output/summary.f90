@@ -30,6 +30,7 @@ contains
         row(1:9) = [real(result%steps, dp), result%time, real(result%iterations, dp), &
             real(result%rejected, dp), real(result%snap_backs, dp), real(all%events, dp), none, &
             none, result%peak_velocity]
+        if (result%in_rates) row(3) = 0.0_dp
         if (all%recurrences > 0) row(7) = all%period / all%recurrences
         if (all%events > 0) row(8) = all%force_drop / run%area / all%events
         associate (e => result%energy)
@@ -48,11 +49,16 @@ contains
         all = total(result%pieces)
         write (report, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
             ' to time ', result%time, ' [T]'
-        most = ', most '
-        if (run%adaptive) most = ' with all its parts, most in a part '
-        write (report, '(4a, i0)') 'Newton iterations  ', &
-            trim(per_step(result%iterations, result%steps)), ' a step', most, &
-            result%most_iterations
+        if (result%in_rates) then
+            write (report, '(3a)') 'rate evaluations   ', trim(per_step(result%iterations, &
+                result%steps)), ' a step, with those of rejected steps'
+        else
+            most = ', most '
+            if (run%adaptive) most = ' with all its parts, most in a part '
+            write (report, '(4a, i0)') 'Newton iterations  ', &
+                trim(per_step(result%iterations, result%steps)), ' a step', most, &
+                result%most_iterations
+        end if
         if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', &
             result%rejected
         if (result%snap_backs > 0) write (report, '(a, i0, a)') 'snap-back          ', &

@@ -36,7 +36,8 @@ module abstract_integrator
         real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
         real(dp) :: t_end = 0.0_dp     !! [T]
         integer :: rejected = 0        !! steps that were tried in vain
-        integer :: iterations = 0, most_iterations = 0   !! of Newton's method, the latter in a step
+        integer :: iterations = 0, most_iterations = 0   !! the latter in a step
+        logical :: in_rates = .false.  !! these are evaluations of rates, not Newton's iterations
     contains
         procedure(get_ready), deferred :: prepare
         procedure(take_step), deferred :: step

@@ -7,7 +7,7 @@ module continuous_chain
     use abstract_integrator, only : step_report
     use archive_file, only : archive
     use chain_rates, only : chain_equations
-    use continuous_steps, only : continuous, fill_block, set_up, unknowns_of
+    use continuous_steps, only : continuous, fill_block, implicit_rates, set_up, unknowns_of
     use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings
@@ -175,12 +175,11 @@ contains
         class(continuous_blocks), intent(inout) :: self
         real(dp), intent(in) :: start, end   !! [T]
         real(dp), intent(out) :: error       !! part of the tolerated one
-        integer, parameter :: stages = 6
         logical :: failed
 
         call self%rodas%step(self%chain, start, end - start, self%now, self%now_rates, self%then, &
             error)
-        call self%count_iterations(stages)
+        call self%count_iterations(implicit_rates)
         if (error > 1.0_dp) return
         call self%chain%rates(end, self%then, self%then_rates, failed)
         if (failed) error = huge(error)

@@ -25,6 +25,7 @@ module continuous_steps
 
     public :: continuous, fill_block, set_up, unknowns_of
 
+    integer, parameter, public :: implicit_rates = 11   !! evaluations of a block's in a step
     !> Part of the time that no step is shorter than.
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
 
@@ -70,6 +71,7 @@ contains
         real(dp) :: largest   !! normal traction [F/L^2]
 
         call self%take_run(run, system, start)
+        self%in_rates = .true.
         self%dt = run%dt
         self%dt_min = run%dt_min
         self%dt_max = run%dt_max
@@ -516,7 +518,7 @@ contains
         type(trial), intent(inout) :: tried   !! its length is given
         real(dp) :: scales(2, controlled), growth
         logical :: failed
-        integer, parameter :: explicit_stages = 6, implicit_stages = 10
+        integer, parameter :: explicit_rates = 6   !! evaluations of them in a step
 
         tried%switch = 0
         tried%error = huge(tried%error)
@@ -538,7 +540,7 @@ contains
             call dormand_prince_step(self%equations, t, tried%h, self%y, self%first, &
                 self%weights, tried%y, tried%last, tried%error, tried%stiffness)
         end if
-        call self%count_iterations(merge(implicit_stages, explicit_stages, self%implicit))
+        call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
         self%jumped = .not. tried%error < huge(tried%error)
     end subroutine attempt
 

@@ -529,6 +529,7 @@ class AdaptiveSteps(Columns):
         result = self.run_text(text, '--no-plot')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         self.assertIn('rejected steps', result.stdout) if ('time', 'rtol') in changes else None
+        self.assertIn('rate evaluations' if ('time', 'rtol') in changes else 'Newton iterations', result.stdout)
         unbalanced = float(result.stdout.split('unbalanced')[1].split()[0])
         return [float(row['onset']) for row in self.rows('case_out/case_events.csv')], unbalanced
 
