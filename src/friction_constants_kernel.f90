@@ -36,7 +36,7 @@ contains
             if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
                 source%lower(k) > 0.0_wp, source%value(k), constants(:, k), wrong)
         end do
-        do k = c_own, c_own + source%n_own - 1
+        do k = c_squeeze, c_own + source%n_own - 1
             call follow_rules(source, k, constants, wrong)
         end do
         constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one

@@ -80,6 +80,11 @@ contains
             + with_two_coefficients
         if (option <= nprops) plan%source%place(c_cap) = option
         if (option + 1 <= nprops) plan%source%place(c_squeeze) = option + 1
+        if (option + 1 <= nprops .and. iand(plan%options, with_two_coefficients) == 0) then
+            ! the first coefficients that differ may bring the direction with them that has no lanes
+            plan%source%lower(c_squeeze) = props(option + 1)
+            plan%source%upper(c_squeeze) = props(option + 1)
+        end if
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
         if (option + 3 <= nprops) call must_stay(option + 3, props(option + 3), plan)
         if (option + 4 <= nprops) call must_stay(option + 4, props(option + 4), plan)
