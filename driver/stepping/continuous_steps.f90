@@ -358,7 +358,7 @@ contains
         associate (eq => self%equations)
             if (pressure > open_level(self) .and. eq%phase /= phase_open) then
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
-                call press(self, state%normal, pressure)
+                call press(self, state%normal, pressure, lost(self, state%time))
                 if (eq%follows_share()) call slide_on(self, state%normal)
                 call apply_normal_traction(self%system, pressure, state, taken)
                 self%known = .false.
@@ -368,17 +368,13 @@ contains
                     call hold_velocity(self, pressure)
                     return
                 end if
-                if (taken) then
-                    call synchronise(self, state)
-                else
-                    ! a creeping contact that is relieved may slip far in a time that is lost in
-                    ! round-off
-                    if (eq%surface%traits%stiff) call slip_at_once(self, pressure, &
-                        abs(self%y(elastic)), 0.0_dp, 16.0_dp * shortest * max(state%time, &
-                        self%dt_min), 1.0e-3_dp)
-                end if
                 if (eq%surface%traits%onset /= onset_gradual) eq%phase = phase_stick
                 if (eq%phase == phase_capped) eq%phase = phase_slide
+                if (taken) then
+                    call synchronise(self, state)
+                else if (eq%surface%traits%stiff) then
+                    call creep_at_once(self, state%time)
+                end if
             else if (pressure > open_level(self) .eqv. eq%phase == phase_open) then
                 eq%phase = phase_open
                 if (pressure > open_level(self)) eq%phase = merge(phase_slide, phase_stick, &
@@ -412,48 +408,116 @@ contains
         self%known = .false.
     end subroutine slide_on
 
-    !> What the law remembers may depend on the pressure.
-    subroutine press(self, before, after)
+    !> What the law remembers may depend on the pressure. What of it comes back in a time that no
+    !> step can follow, comes back at once.
+    subroutine press(self, before, after, time_lost)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: before, after   !! pressure [F/L^2]
-        type(law_state) :: state
+        real(dp), intent(in) :: time_lost       !! [T]
+        type(law_state) :: state, healing
 
         associate (eq => self%equations)
             if (.not. eq%surface%traits%logarithmic) return
             state = eq%surface%law%pressed(eq%law_state_of(self%y, before), before, after)
+            if (state%r < time_lost) then
+                healing = eq%surface%state_rates(state, load_rates(0.0_dp, 0.0_dp, eq%alpha, &
+                    after, 0.0_dp, .false.), 0.0_dp)
+                state%r = state%r + time_lost * healing%r
+            end if
             self%y(memory) = log(state%r)
         end associate
     end subroutine press
 
-    !> Slip at once, as far as the friction routine lets the contact slip in a time, if that is far.
-    subroutine slip_at_once(self, pressure, before, push, dt, far)
+    !> A time that is lost in round-off, but for the steps that it takes to follow a decay which
+    !> has gone on for as long [T].
+    pure function lost(self, t) result(dt)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp) :: dt
+        real(dp), parameter :: steps = 256.0_dp
+
+        dt = steps * shortest * max(t, self%dt_min)
+    end function lost
+
+    !> A creeping contact that is relieved may slip far in a time that is lost in round-off. It is
+    !> followed over its slip then, in steps in which the slip rate falls by less than a half.
+    subroutine creep_at_once(self, t)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        integer, parameter :: most_steps = 10000
+        real(dp), parameter :: far = 1.0e-3_dp   !! part of the elastic displacement
+        real(dp) :: ahead(unknowns), part, time_left, passes
+        logical :: failed
+        integer :: i
+
+        time_left = lost(self, t)
+        call self%equations%rates(t, self%y, self%first, failed)
+        if (failed .or. self%first(slip) * time_left < far * abs(self%y(elastic))) return
+        part = far * abs(self%y(elastic))
+        do i = 1, most_steps
+            call creep(self, t, part, ahead, passes, failed)
+            if (failed) then
+                part = 0.5_dp * part
+                cycle
+            end if
+            self%y = ahead
+            time_left = time_left - passes
+            if (time_left <= 0.0_dp) exit
+            part = 1.2_dp * part
+        end do
+        self%known = .false.
+    end subroutine creep_at_once
+
+    !> A step over a slip, by Runge and Kutta's method, and the time that passes in it.
+    subroutine creep(self, t, distance, ahead, passes, failed)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t          !! [T]
+        real(dp), intent(in) :: distance   !! of the slip [L]
+        real(dp), intent(out) :: ahead(unknowns)
+        real(dp), intent(out) :: passes    !! [T]
+        logical, intent(out) :: failed     !! the slip rate falls too far in it
+        real(dp), parameter :: nodes(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
+        real(dp), parameter :: weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp] / 6.0_dp
+        real(dp) :: dy(unknowns), first_rate
+        integer :: i
+
+        ahead = self%y
+        passes = 0.0_dp
+        dy = 0.0_dp
+        do i = 1, size(nodes)
+            call self%equations%rates(t, self%y + nodes(i) * distance * dy, dy, failed)
+            if (i == 1) first_rate = dy(slip)
+            failed = failed .or. 2.0_dp * dy(slip) < first_rate
+            if (failed) return
+            passes = passes + weights(i) * distance / dy(slip)
+            dy = dy / dy(slip)
+            ahead = ahead + weights(i) * distance * dy
+        end do
+    end subroutine creep
+
+    !> Slip without time, as far as the friction routine lets the contact slip, if that is far.
+    subroutine slip_at_once(self, pressure, before)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp), intent(in) :: before     !! elastic displacement, in the sense of the slip [L]
-        real(dp), intent(in) :: push       !! displacement that goes with it, part of `before`
-        real(dp), intent(in) :: dt         !! [T]
-        real(dp), intent(in) :: far        !! part of `before`
+        real(dp), parameter :: push = 1.0e-12_dp, far = 1.0e-6_dp   !! parts of that
         real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
         integer :: status
-        logical :: logarithmic
 
         associate (eq => self%equations, y => self%y)
-            logarithmic = eq%surface%traits%logarithmic
             statev = 0.0_dp
             statev(statev_status) = 1.0_dp
             statev(statev_u_n) = -pressure / self%system%props(prop_alpha_n)
             statev(statev_u_et) = before
             statev(statev_r) = y(memory)
-            if (logarithmic) statev(statev_r) = exp(y(memory))
-            call friction_update([0.0_dp, push * before], dt, self%system%props, statev, traction, &
-                tangent, status)
+            call friction_update([0.0_dp, push * before], 0.0_dp, self%system%props, statev, &
+                traction, tangent, status)
             if (status < 0 .or. statev(statev_slip) < far * before) return
             y(slip) = y(slip) + statev(statev_slip)
             y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
                 - statev(statev_u_et)**2)
             y(elastic) = sign(statev(statev_u_et), y(elastic))
             y(memory) = statev(statev_r)
-            if (logarithmic) y(memory) = log(statev(statev_r))
         end associate
     end subroutine slip_at_once
 
@@ -769,7 +833,7 @@ contains
                 self%y(dissipated) = self%y(dissipated) + max(0.0_dp, 0.5_dp * eq%alpha &
                     * (before**2 - after**2))
             else if (eq%surface%traits%memory == 2) then
-                call slip_at_once(self, pressure, before, 1.0e-12_dp, 0.0_dp, 1.0e-6_dp)
+                call slip_at_once(self, pressure, before)
             end if
         end associate
     end subroutine jump

@@ -691,6 +691,57 @@ class AdaptiveSteps(Columns):
         self.assertLess(run['mu'][-1], 0.7)
         self.assertAlmostEqual(run['mu'][-1], run['friction_force'][-1] / 5, delta=1e-12)
 
+    RELIEVED = ("&friction law = '{law}', alpha_n = 1e5, alpha_t = 1e5, a = 0.01, b = {b}, d_c = 0.01, v0 = 1, f0 = 0.6 {more} /\n"
+                '&slider mass = 1, stiffness = 1000, damping = 30 /\n'
+                '&drive velocity = 1, normal = {normal}, duration = {each} /\n&time t_end = {end}, rtol = 1e-8 /\n')
+
+    def relieved(self, law, b, more, normal, scale=1):
+        text = self.RELIEVED.format(law=law, b=b, more=more, normal=normal, each=f'{normal.count(",") + 1}*{scale}',
+                                    end=(normal.count(',') + 1) * scale)
+        if scale != 1:
+            for old, new in (('v0 = 1', f'v0 = {1 / scale!r}'), ('velocity = 1', f'velocity = {1 / scale!r}'),
+                             ('mass = 1', f'mass = {scale**2}'), ('damping = 30', f'damping = {30 * scale}'),
+                             ('v_w = 1000', f'v_w = {1000 / scale!r}')):
+                text = text.replace(old, new)
+        return self.run_columns(text)
+
+    def test_a_relieved_contact_whose_state_keeps_creeps_by_the_closed_form(self):
+        # at first e^60 times faster than the block, then v = V/(1 - (1 - V/v_1) exp(-k V t)), k = alpha_t/(a p)
+        run = self.relieved('rate_and_state', '0', '', '100, 50')
+        after = [i for i, t in enumerate(run['time']) if 1 + 1e-9 < t < 1 + 1e-6]
+        self.assertGreater(len(after), 50)
+        for i in after:
+            v = 1 / -math.expm1(-2e5 * (run['time'][i] - 1))
+            self.assertAlmostEqual(run['friction_force'][i] / 50, 0.6 + 0.01 * math.log(v), delta=1e-6)
+
+    def test_what_a_relieved_contact_remembers_falls_with_its_slip(self):
+        # d(ln theta)/ds = -ln(v theta/d_c)/d_c under the slip law, too, while the spring unloads with the slip
+        run = self.relieved('rate_and_state', '0.008', ", evolution = 'slip'", '100, 50')
+        last = max(i for i, t in enumerate(run['time']) if t <= 1)
+        end = run['slip'][last + 1] - run['slip'][last]
+        self.assertGreater(end, 2e-4)
+
+        def fall(s, ln_theta):
+            ln_v = (run['friction_force'][last] - 1e5 * s) / 0.5 - 60 - 0.8 * (ln_theta - math.log(0.01))
+            return -100 * (ln_v + ln_theta - math.log(0.01))
+        ln_theta = math.log(run['theta'][last])
+        h = end / 1000
+        for i in range(1000):
+            half = ln_theta + 0.5 * h * fall(i * h, ln_theta)
+            ln_theta += h * fall((i + 0.5) * h, half)
+        self.assertAlmostEqual(math.log(run['theta'][last + 1]), ln_theta, delta=1e-5)
+
+    def test_steps_of_the_normal_traction_are_followed_under_every_rate_and_state_law(self):
+        for law, more in (('rate_and_state', ", evolution = 'slip'"), ('flash_heating', ', f_w = 0.2, v_w = 1000'),
+                          ('linker_dieterich', ', alpha = 0.3'), ('linker_dieterich', ", alpha = 0.3, evolution = 'slip'"),
+                          ('linker_dieterich', ", alpha = 0.3, contact = 'rigid'"),
+                          ('linker_dieterich', ', alpha = 0.3, tau_max = 55')):
+            for scale in (1, 10000000):
+                with self.subTest(law=law, more=more, scale=scale):
+                    run = self.relieved(law, '0.008', more, '100, 50, 150, 20, 100', scale)
+                    force = 55 if 'tau_max' in more else 60
+                    self.assertAlmostEqual(run['friction_force'][-1], force, delta=0.01 * force)
+
     def test_a_surface_that_has_weakened_for_good_slides_at_tight_tolerances(self):
         text = law_namelist('slip_weakening', d_c='1e-4').replace('dt = 1e-3', 'rtol = 1e-12')
         run = self.run_columns(text.replace('t_end = 0.1', 't_end = 6').replace('damping = 0.01', 'damping = 1'))
