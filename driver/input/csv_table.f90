@@ -5,7 +5,7 @@
 !> line of column names is found by the names that are asked for; titles before it, up to two rows
 !> of units or the like behind it, other columns, empty lines and lines that start with # or %
 !> are left alone. A line of names may itself be such a comment. Numbers have a decimal point or a
-!> decimal comma, the same in the whole file.
+!> decimal comma, the same in the whole file. Commas that may as well part thousands are refused.
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
@@ -56,6 +56,9 @@ module csv_table
         integer, allocatable :: places(:)             !! of the columns asked for; 0: not there
         integer :: mark = 0                           !! 1 decimal point, 2 comma; 0 none so far
         integer :: mark_line = 0                      !! where the first one is
+        integer :: doubt_line = 0                     !! of a comma that may part thousands
+        character(len=:), allocatable :: in_doubt     !! that cell
+        logical :: sure = .false.                     !! a comma can only be a decimal one
         integer :: word_rows = 0                      !! rows of units or the like so far
         integer :: empty_row = 0                      !! the last row of nothing but separators
     end type file_form
@@ -112,6 +115,11 @@ contains
             call take_row(text, line, requests, form, cells, rows, read_in)
             if (size(read_in%faults) > most_faults) exit
         end do
+        if (form%doubt_line > 0 .and. form%separator /= ';' .and. .not. form%sure) then
+            call read_in%add_fault(form%doubt_line, form%in_doubt // ': is its comma a decimal ' &
+                // 'mark, or does it part thousands? No number of the file tells: write it ' &
+                // 'without, or separate the cells by semicolons')
+        end if
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
     end subroutine read_table
@@ -443,6 +451,12 @@ contains
             number(comma:comma) = '.'
             if (mark == 1) why = 'has a decimal point and a comma'
             mark = 2
+            if (.not. may_part_thousands(word)) then
+                form%sure = .true.
+            else if (form%doubt_line == 0) then
+                form%doubt_line = line
+                form%in_doubt = printable(title) // " = '" // word // "'"
+            end if
         end if
         if (form%mark == 0 .and. mark > 0) form%mark_line = line
         if (form%mark == 0) form%mark = mark
@@ -462,6 +476,20 @@ contains
         value = 0.0_dp
         call read_in%add_fault(line, printable(title) // " = '" // printable(word) // "': " // why)
     end subroutine take_cell
+
+    !> 1,000 and -12,500 are numbers with a decimal comma, and such with a comma behind thousands.
+    pure function may_part_thousands(word) result(yes)
+        character(len=*), intent(in) :: word   !! has a comma
+        logical :: yes
+        character(len=*), parameter :: digits = '0123456789'
+        integer :: first, comma
+
+        first = verify(word, '+-')
+        comma = index(word, ',')
+        yes = comma > first .and. comma <= first + 3 .and. first <= 2 .and. len(word) == comma + 3
+        if (yes) yes = word(first:first) /= '0' .and. verify(word(first:comma - 1), digits) == 0 &
+            .and. verify(word(comma + 1:), digits) == 0
+    end function may_part_thousands
 
     subroutine double_room(read_in)
         type(table), intent(inout) :: read_in

@@ -1,5 +1,5 @@
 !> Reads text files whole, through the C library: from disks, pipes and devices alike. Byte-order
-!> marks, UTF-16 and the line ends of other systems are turned into plain lines of UTF-8.
+!> marks, UTF-16, Latin-1 and the line ends of other systems are turned into plain lines of UTF-8.
 module whole_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_ptr, c_size_t
     use c_library, only : c_fclose, c_ferror, c_fopen, c_fread
@@ -87,8 +87,8 @@ contains
     end function why_not_opened
 
     !> Takes a byte-order mark off, turns UTF-16 into UTF-8, and ends each line by a line feed.
-    !> UTF-16 without a mark shows in its first letters, each of which has a byte that is zero. A
-    !> character 0 belongs to no text: `problem` tells its line.
+    !> UTF-16 without a mark shows in its first letters, each of which has a byte that is zero. What
+    !> is not UTF-8 is Latin-1. A character 0 belongs to no text: `problem` tells its line.
     pure subroutine plain_text(bytes, text, problem)
         character(len=*), intent(in) :: bytes
         character(len=:), allocatable, intent(out) :: text
@@ -107,8 +107,10 @@ contains
             call decode_utf16(bytes, 2, text)
         else if (index(bytes, utf8_mark) == 1) then
             text = bytes(4:)
-        else
+        else if (is_utf8(bytes)) then
             text = bytes
+        else
+            call decode_latin_1(bytes, text)
         end if
 
         n = 0
@@ -141,6 +143,41 @@ contains
         yes = len(bytes) >= size(zero)
         if (yes) yes = all([((bytes(i:i) == achar(0)) .eqv. zero(i), i = 1, size(zero))])
     end function has_zeros
+
+    !> Has each character as many bytes as its first one says?
+    pure function is_utf8(bytes) result(yes)
+        character(len=*), intent(in) :: bytes
+        logical :: yes
+        integer :: following, code, i
+
+        following = 0
+        do i = 1, len(bytes)
+            code = iachar(bytes(i:i))
+            if (code < 128 .and. following == 0) cycle
+            yes = ((following > 0) .eqv. (code >= 128 .and. code < 192)) .and. code < 248
+            if (.not. yes) return
+            if (following > 0) then
+                following = following - 1
+            else
+                following = count(code >= [192, 224, 240])
+            end if
+        end do
+        yes = following == 0
+    end function is_utf8
+
+    !> Turns Latin-1, whose bytes are the first 256 characters, into UTF-8.
+    pure subroutine decode_latin_1(bytes, text)
+        character(len=*), intent(in) :: bytes
+        character(len=:), allocatable, intent(out) :: text
+        integer :: n, i
+
+        allocate (character(len=2 * len(bytes)) :: text)
+        n = 0
+        do i = 1, len(bytes)
+            call append_utf8(iachar(bytes(i:i)), text, n)
+        end do
+        text = text(:n)
+    end subroutine decode_latin_1
 
     !> Turns UTF-16 into UTF-8. What is no character becomes U+FFFD.
     pure subroutine decode_utf16(bytes, low, text)
