@@ -23,7 +23,7 @@ contains
         type(run_warning), allocatable, intent(out) :: warnings(:)
 
         allocate (warnings(0))
-        call look_at_energy(result, warnings)
+        call look_at_energy(run, result, warnings)
         if (run%mass > 0.0_dp) then
             if (.not. run%adaptive) call look_at_step(run, result, warnings)
             call look_at_contact(run, result, warnings)
@@ -32,7 +32,8 @@ contains
     end subroutine find_warnings
 
     !> What comes in must be somewhere: the rest is the error of the integration in time.
-    subroutine look_at_energy(result, warnings)
+    subroutine look_at_energy(run, result, warnings)
+        type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: allowed = 0.02_dp   !! part of what has passed through the system
@@ -43,11 +44,26 @@ contains
             passed = max(abs(e%drive_work), abs(e%at_start), e%dissipated + e%damped)
             if (abs(e%unbalanced()) <= allowed * passed) return
             write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
-                100.0_dp * abs(e%unbalanced()) / passed, ' %: take shorter steps (dt), or &
-                &steps by their error (rtol)'
+                100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
         end associate
+        if (run%adaptive) then
+            text = trim(text) // ' a smaller rtol'
+        else
+            text = trim(text) // ' shorter steps (dt), or steps by their error (rtol)'
+        end if
+        if (damps_steps(run)) text = trim(text) // '; what rho_infinity or gamma damps counts as &
+            &open'
         warnings = [warnings, run_warning('energy_balance', text)]
     end subroutine look_at_energy
+
+    !> Does the method of the steps damp oscillations?
+    pure function damps_steps(run) result(damps)
+        type(settings), intent(in) :: run
+        logical :: damps
+
+        damps = run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp .or. run%mass > 0.0_dp &
+            .and. run%gamma > 0.5_dp .and. .not. run%adaptive
+    end function damps_steps
 
     !> A slip event lasts about pi sqrt(M/K).
     subroutine look_at_step(run, result, warnings)
@@ -91,8 +107,7 @@ contains
         law = friction_facts(run%props)
         if (run%drive%largest_normal() * law%rate_weakening &
             <= run%dt * run%props(prop_alpha_t)) return
-        if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp) return
-        if (run%gamma > 0.5_dp .and. .not. run%adaptive) return
+        if (damps_steps(run)) return
         critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(prop_alpha_t)))
         if (run%damping + run%area * law%damping >= least * critical) return
         text = 'friction drops at once when slip begins, and the contact spring (alpha_t) rings &

@@ -47,6 +47,7 @@ contains
             'normal_mass', 'is for one block')
         call read_contact(file, run)
         call check_damper(file, run)
+        call check_massless(file, run)
         call derive_slip_rate(file, run)
         call read_events(file, run)
         call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
@@ -351,6 +352,29 @@ contains
                 // 'steps (&time rtol)')
         end if
     end subroutine check_damper
+
+    !> A block without mass in continuous time: does its velocity follow from the balance of forces?
+    subroutine check_massless(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+        character(len=*), parameter :: group = 'slider', key = 'damping'
+        type(facts) :: law
+        real(dp) :: falls
+
+        if (.not. allocated(run%props) .or. .not. run%adaptive .or. run%mass > 0.0_dp) return
+        law = friction_facts(run%props)
+        if (run%newmark .or. law%damping > 0.0_dp) return
+        falls = run%area * law%rate_weakening * run%drive%largest_normal()
+        if (falls > 0.0_dp .and. run%damping <= falls) then
+            call file%reject(group, key, 'must exceed area d_c (mu_s - mu_k) normal_traction ' &
+                // 'without mass and with adaptive steps (&time rtol), or no velocity balances ' &
+                // 'the forces')
+        else if (run%rigid_contact .and. .not. run%damping > 0.0_dp .and. law%traits%onset &
+            /= onset_gradual) then
+            call file%reject(group, key, 'or a mass must be there beside contact = ''rigid'': ' &
+                // 'nothing else tells the velocity of the block under this law')
+        end if
+    end subroutine check_massless
 
     !> The spring of the contact, which continuous time can do without.
     subroutine read_contact(file, run)

@@ -61,9 +61,9 @@ contains
         end if
         if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', &
             result%rejected
-        if (result%snap_backs > 0) write (report, '(a, i0, a)') 'snap-back          ', &
-            result%snap_backs, &
-            ' steps saw several equilibria: take a smaller dt or a larger alpha_t'
+        if (result%snap_backs > 0) write (report, '(a, i0, 3a)') 'snap-back          ', &
+            result%snap_backs, ' steps saw several equilibria: take a smaller ', &
+            trim(merge('rtol', 'dt  ', run%adaptive)), ' or a larger alpha_t'
         write (report, '(a, i0)') 'slip events        ', all%events
         if (run%chain%n_blocks > 1) then
             write (report, '(2(a, i0), a)') 'events of blocks   ', result%chain_events, &

@@ -14,7 +14,7 @@ module adaptive_steps
     use run_settings, only : settings
     use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
         slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit
+    use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
     use time_integrator, only : newmark
     use turning_times, only : turn
     implicit none
@@ -91,8 +91,7 @@ contains
         integer, intent(in) :: status
         character(len=:), allocatable, intent(out) :: why
 
-        call self%explain_status(status, 'not within the tolerance by steps as short as dt_min', &
-            why)
+        call self%explain_status(status, why_too_short(self%dt_min), why)
     end subroutine why_stopped
 
     !> One step from `old` to `time`, in one piece of the programme.

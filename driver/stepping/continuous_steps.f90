@@ -19,7 +19,7 @@ module continuous_steps
         memory, phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
         switches, unknowns, velocity
     use slider_system, only : apply_normal_traction, slider, slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit
+    use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
     implicit none
     private
 
@@ -818,15 +818,17 @@ contains
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp), intent(in) :: strength   !! [F/L^2]
-        real(dp) :: before, after, by_rate
+        real(dp) :: before, after, by_rate, v
+        logical :: failed
 
         associate (eq => self%equations)
             before = abs(self%y(elastic))
             self%y(elastic) = eq%sense * strength / eq%alpha
             if (eq%phase == phase_capped) return
             if (eq%surface%traits%onset == onset_drops) then
+                call eq%find_velocity(self%y, pressure, v, failed)
                 call eq%surface%resistance_at(eq%law_state_of(self%y, pressure), max(0.0_dp, &
-                    eq%sense * self%y(velocity)), pressure, after, by_rate)
+                    eq%sense * v), pressure, after, by_rate)
                 after = min(after, eq%surface%tau_max) / eq%alpha
                 self%y(elastic) = eq%sense * after
                 self%y(slip) = self%y(slip) + max(0.0_dp, before - after)
@@ -953,7 +955,6 @@ contains
         class(continuous), intent(in) :: self
         integer, intent(in) :: status
         character(len=:), allocatable, intent(out) :: why
-        character(len=10) :: limit
 
         if (status == friction_no_rate .and. self%system%mass <= 0.0_dp) then
             why = unstable_without_inertia
@@ -962,12 +963,8 @@ contains
                 // 'Take a larger alpha_t'
         else if (status /= friction_no_convergence) then
             why = trim(friction_message(status))
-        else if (self%dt_min > 0.0_dp) then
-            write (limit, '(es10.3)') self%dt_min
-            why = 'the error exceeds rtol even in steps as short as dt_min = ' &
-                // trim(adjustl(limit))
         else
-            why = 'the error exceeds rtol even in steps as short as the round-off of the time'
+            why = why_too_short(self%dt_min)
         end if
     end subroutine why_stopped
 

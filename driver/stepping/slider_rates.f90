@@ -50,7 +50,7 @@ module slider_rates
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
-        procedure :: enter, rates, switch_values, law_state_of, strength, traction, inputs, &
+        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, traction, inputs, &
             follows_traction, sense_of, follows_share, runs_away
     end type slider_equations
 
@@ -156,7 +156,7 @@ contains
                 call rigid_contact(self, y, pull, pressure, pressure_rate, contact, failed)
             end if
         else if (self%phase == phase_slide .and. self%surface%traits%onset == onset_drops) then
-            call dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
+            call dropping_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
         else
             call elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
         end if
@@ -377,21 +377,41 @@ contains
         end if
     end subroutine take_memory
 
+    !> Velocity of a block that slides on a law with a yield point: its own, or without mass that at
+    !> which the damper and the resistance balance the drive spring [L/T].
+    pure subroutine find_velocity(self, y, pressure, v, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp), intent(out) :: v         !! [L/T]
+        logical, intent(out) :: failed     !! there is no such velocity
+        real(dp) :: push
+
+        failed = .false.
+        v = y(velocity)
+        if (self%mass > 0.0_dp) return
+        push = self%sense * self%stiffness * y(extension) / self%area
+        call slip_of(self, law_state_of(self, y, pressure), pressure, damper_balance(self%sense, &
+            push, self%damping / self%area), v, failed)
+        v = self%sense * v
+    end subroutine find_velocity
+
     !> Friction that falls as soon as it slides leaves the spring no rate of its own: the traction
     !> follows the block's velocity.
-    pure subroutine dropping_contact(self, y, pull, pressure, pressure_rate, contact, failed)
+    pure subroutine dropping_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, &
+        failed)
         class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
+        real(dp), intent(in) :: y(controlled), pull, v_drive, pressure, pressure_rate
         type(contact_motion), intent(out) :: contact
         logical, intent(out) :: failed
-        real(dp) :: resistance, by_rate, acceleration
+        real(dp) :: v, resistance, by_rate, acceleration
 
-        failed = .not. self%mass > 0.0_dp
+        call find_velocity(self, y, pressure, v, failed)
         if (failed) return
-        contact%velocity = y(velocity)
+        contact%velocity = v
         call self%surface%resistance_at(law_state_of(self, y, pressure), max(0.0_dp, &
-            self%sense * y(velocity)), pressure, resistance, by_rate)
-        if (self%sense * y(velocity) <= 0.0_dp) by_rate = 0.0_dp
+            self%sense * v), pressure, resistance, by_rate)
+        if (self%sense * v <= 0.0_dp) by_rate = 0.0_dp
         if (resistance > self%surface%tau_max) then
             resistance = self%surface%tau_max
             by_rate = 0.0_dp
@@ -401,10 +421,14 @@ contains
                 * pressure_rate
         end if
         contact%traction = self%sense * resistance
-        acceleration = (pull - self%damping * y(velocity) - self%area * contact%traction) &
-            / self%mass
+        if (self%mass > 0.0_dp) then
+            acceleration = (pull - self%damping * v - self%area * contact%traction) / self%mass
+        else
+            acceleration = (self%stiffness * (v_drive - v) - self%area * contact%elastic) &
+                / (self%damping + self%area * by_rate)
+        end if
         contact%elastic = (contact%elastic + by_rate * acceleration) / self%alpha
-        contact%slip = self%sense * (y(velocity) - contact%elastic)
+        contact%slip = self%sense * (v - contact%elastic)
     end subroutine dropping_contact
 
     !> A contact without a spring: the block's velocity is the slip rate.
@@ -426,11 +450,9 @@ contains
             contact%velocity = y(velocity)
             if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(y(velocity))
             if (.not. self%mass > 0.0_dp) then
-                failed = self%surface%traits%onset /= onset_gradual
-                if (failed) return
-                sense = self%sense_of(pull)
-                call slip_of(self, state, pressure, damper_balance(sense, abs(pull) / self%area, &
-                    self%damping / self%area), contact%slip, failed)
+                if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(pull)
+                call slip_of(self, state, pressure, damper_balance(sense, sense * pull &
+                    / self%area, self%damping / self%area), contact%slip, failed)
                 if (failed) return
                 contact%velocity = sense * contact%slip
             end if
@@ -639,6 +661,8 @@ contains
                     g(2) = self%alpha * abs(y(elastic)) - cap
                 else
                     g(1) = -dy(slip)
+                    if (self%rigid .and. .not. self%mass > 0.0_dp) g(1) = min(cap, strength(self, &
+                        y, pressure)) - self%sense * self%stiffness * y(extension) / self%area
                     g(3) = y(memory) - self%surface%traits%kink
                     if (capped .and. .not. self%rigid .and. self%surface%traits%onset &
                         /= onset_drops) then

@@ -6,7 +6,7 @@ module step_ends
     implicit none
     private
 
-    public :: end_of_step, find_opening, next_limit
+    public :: end_of_step, find_opening, next_limit, why_too_short
 
 contains
 
@@ -69,5 +69,17 @@ contains
             end if
         end do
     end subroutine find_opening
+
+    !> Why a run ends whose steps would have to be shorter than is allowed.
+    pure function why_too_short(dt_min) result(why)
+        real(dp), intent(in) :: dt_min   !! shortest step [T]; 0: what round-off of the time allows
+        character(len=:), allocatable :: why
+        character(len=10) :: limit
+
+        why = 'the error exceeds rtol even in steps as short as the round-off of the time'
+        if (.not. dt_min > 0.0_dp) return
+        write (limit, '(es10.3)') dt_min
+        why = 'the error exceeds rtol even in steps as short as dt_min = ' // trim(adjustl(limit))
+    end function why_too_short
 
 end module step_ends

@@ -66,6 +66,26 @@ class Programme(Columns):
                 (self.folder / 'load.csv').write_bytes((start + self.PLAIN).encode(code))
                 self.assertEqual(self.run_columns(text), expected)
 
+    def test_latin_1_is_read(self):
+        # as rigs in Europe write it: the name of a column in a namelist of UTF-8, a degree sign in a unit, the unit of a millionth
+        expected = self.run_columns(self.with_file(self.PLAIN))
+        text = self.with_file(self.PLAIN, (('drive', 'time_column'), "'Prüfzeit'"), (('drive', 'normal_column'), "'Kraft [N/mm²]'"))
+        content = self.PLAIN.replace('time', 'Prüfzeit').replace('normal', 'Kraft [N/mm²]').replace('displacement', 'Displacement [µm]')
+        for code in ('latin-1', 'utf-8'):
+            (self.folder / 'load.csv').write_bytes(('# 20 °C\n' + content).encode(code))
+            self.assertEqual(self.run_columns(text), expected)
+        (self.folder / 'case.nml').write_bytes(('! 20 °C\n' + text).encode('latin-1'))
+        self.assert_done(self.run_program('run', 'case.nml', '--no-plot'))
+
+    def test_commas_that_may_part_thousands_are_refused(self):
+        rows = '0,0,10\n10,100,10\n20,"1,000",10\n30,"2,500",10\n'
+        self.assertIn('line 4: displacement = \'1,000\': is its comma a decimal mark, or does it part thousands?',
+                      self.run_text(self.with_file('time,displacement,normal\n' + rows), verb='check').stderr)
+        for content in (rows.replace('10\n30', '"10,5"\n30'), rows.replace('0,0,10', '"0,000",0,10')):   # one tells of all
+            self.assert_done(self.run_text(self.with_file('time,displacement,normal\n' + content), verb='check'))
+        semicolons = 'time;displacement;normal\n0;0;10\n10;1,000;10\n'
+        self.assert_done(self.run_text(self.with_file(semicolons), verb='check'))
+
     def test_columns_and_factors_are_chosen_by_keys(self):
         expected = self.run_columns(self.with_file(self.PLAIN))
         content = ('Zeit;time;Weg;velocity;displacement;Kraft\n5000;0;0;9;9;-10000\n5050;0;50;9;9;-10000\n'
@@ -491,6 +511,49 @@ class ContinuousTime(Columns):
             self.assertLess(max(run['friction_force']), 1.5 * (1 + 1e-9), law)
             self.assertGreater(max(run['friction_force']), 1.5 * (1 - 1e-9), law)
 
+    MASSLESS = ("&friction law = '{law}', alpha_n = 1e4, alpha_t = 1e6, contact = '{contact}', {constants} /\n"
+                '&slider mass = 0, stiffness = 1, damping = {damping}, normal_traction = 1 /\n'
+                '&drive velocity = {sign}0.5 /\n&time t_end = 6, rtol = 1e-7 /\n')
+
+    def test_a_damper_alone_tells_the_velocity_under_laws_with_a_yield_point(self):
+        # C v = K e - mu(v) p, e' = V - v; Coulomb: K e = mu p + C V (1 - exp(-K (t - t_0)/C)) from t_0 on
+        def coulomb(pull):
+            return max(0, pull - 0.6) / 0.5
+
+        def static_kinetic(pull):
+            low, high = 0, max(0, (pull - 0.4) / 0.5)
+            for _ in range(60 if pull > 0.6 else 0):
+                v = 0.5 * (low + high)
+                low, high = (v, high) if 0.5 * v + 0.4 + 0.2 * math.exp(-2 * v) < pull else (low, v)
+            return low
+        for law, constants, velocity in (('coulomb', 'mu = 0.6', coulomb),
+                                         ('static_kinetic', 'mu_s = 0.6, mu_k = 0.4, d_c = 2', static_kinetic)):
+            pulls, h = [0.6], 1e-3   # from onset on
+            for _ in range(4800):
+                half = pulls[-1] + 0.5 * h * (0.5 - velocity(pulls[-1]))
+                pulls.append(pulls[-1] + h * (0.5 - velocity(half)))
+            for contact in ('rigid', 'elastic'):
+                for sign in ('', '-'):
+                    run = self.run_columns(self.MASSLESS.format(law=law, constants=constants, contact=contact, damping=0.5,
+                                                                sign=sign))
+                    with self.subTest(law=law, contact=contact, sign=sign):
+                        for t, force in zip(run['time'], run['spring_force']):
+                            if t < 1.2:
+                                self.assertAlmostEqual(abs(force), 0.5 * t, delta=1e-6)
+                                continue
+                            i = min(int((t - 1.2) / h), 4799)
+                            truth = pulls[i] + ((t - 1.2) / h - i) * (pulls[i + 1] - pulls[i])
+                            self.assertAlmostEqual(abs(force), truth, delta=3e-6)
+
+    def test_what_leaves_the_velocity_of_a_block_without_mass_open_is_refused(self):
+        for law, constants in (('coulomb', 'mu = 0.6'), ('slip_weakening', 'mu_s = 0.6, mu_k = 0.4, d_c = 1')):
+            self.refused(self.MASSLESS.format(law=law, constants=constants, contact='rigid', damping=0, sign=''),
+                         "&slider damping = 0: or a mass must be there beside contact = 'rigid'")
+        for contact in ('rigid', 'elastic'):
+            self.refused(self.MASSLESS.format(law='static_kinetic', constants='mu_s = 0.6, mu_k = 0.4, d_c = 2', contact=contact,
+                                              damping=0.39, sign=''),
+                         '&slider damping = 0.39: must exceed area d_c (mu_s - mu_k) normal_traction without mass')
+
     def test_limits_are_named_and_inertia_only_where_it_is_missing(self):
         jump = namelist({('slider', 'mass'): '0', ('slider', 'damping'): '0', ('slider', 'stiffness'): '1', ('drive', 'velocity'): '1',
                          ('friction', 'xi'): '1', ('time', 't_end'): '20', ('time', 'rtol'): '1e-6'}, [('time', 'dt')])
@@ -708,8 +771,8 @@ class AdaptiveSteps(Columns):
     def test_a_relieved_contact_whose_state_keeps_creeps_by_the_closed_form(self):
         # at first e^60 times faster than the block, then v = V/(1 - (1 - V/v_1) exp(-k V t)), k = alpha_t/(a p)
         run = self.relieved('rate_and_state', '0', '', '100, 50')
-        after = [i for i, t in enumerate(run['time']) if 1 + 1e-9 < t < 1 + 1e-6]
-        self.assertGreater(len(after), 50)
+        after = [i for i, t in enumerate(run['time']) if 1 + 1e-8 < t < 1 + 1e-6]
+        self.assertGreater(len(after), 20)
         for i in after:
             v = 1 / -math.expm1(-2e5 * (run['time'][i] - 1))
             self.assertAlmostEqual(run['friction_force'][i] / 50, 0.6 + 0.01 * math.log(v), delta=1e-6)

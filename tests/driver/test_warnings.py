@@ -61,6 +61,13 @@ class Warnings(Program):
         self.assertGreater(abs(unbalanced / work), 0.02)
         self.assertAlmostEqual(said, 100 * abs(unbalanced / work), delta=0.1)
 
+    def test_the_remedy_for_an_open_balance_is_one_that_the_input_has(self):
+        told = [line for line in self.warnings(CHAIN) if 'balance of energy' in line]
+        self.assertTrue(told[0].endswith('take shorter steps (dt), or steps by their error (rtol)'), told)
+        told = [line for line in self.warnings(CHAIN.replace('dt=0.01', 'rtol=1e-3, rho_infinity=0.5').replace(
+            't_end=300', 't_end=150')) if 'balance of energy' in line]
+        self.assertTrue(told[0].endswith('take a smaller rtol; what rho_infinity or gamma damps counts as open'), told)
+
     def test_a_step_too_long_for_the_slip(self):
         lasts = math.pi * math.sqrt(1e-3)   # of the slider of test_program
         long = {('time', 't_end'): '12', ('time', 'rho_infinity'): '0'}
