@@ -50,8 +50,8 @@ module slider_rates
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
-        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, traction, inputs, &
-            follows_traction, sense_of, follows_share, runs_away
+        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, traction, &
+            inputs, follows_traction, sense_of, follows_share, runs_away
     end type slider_equations
 
     !> Of a contact with a damper, or on a block with one and without mass: `push - drag v` is its
