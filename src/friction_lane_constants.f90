@@ -88,7 +88,8 @@ contains
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
         if (option + 3 <= nprops) call must_stay(option + 3, props(option + 3), plan)
         if (option + 4 <= nprops) call must_stay(option + 4, props(option + 4), plan)
-        if (.not. ordinary([options%cohesion, options%damping])) plan%kind = lane_none
+        if (.not. ordinary([options%tau_max, options%cohesion, options%damping])) plan%kind &
+            = lane_none
         if (.not. ordinary(plan%source%value(:c_r_0))) plan%kind = lane_none
         if (.not. ordinary(plan%source%value(c_own:))) plan%kind = lane_none
     end subroutine plan_lanes
