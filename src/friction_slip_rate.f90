@@ -267,10 +267,11 @@ contains
 
     !> The slip rate, as a logarithm, by Newton's method on
     !>
-    !>     g(L) = damping e^L/(a p) + asinh(e^(L - ln(2 v0) + x)) - tau/(a p),   L = ln(v)
+    !>     g(L) = damping e^L/(a p) + asinh(e^(L - ln(2 v0) + x)) - t,   L = ln(v), t = tau/(a p)
     !>
     !> which grows and is convex: from where it is positive the method falls to the root. It starts
-    !> from the lower of the slip rates that damping and friction alone allow.
+    !> from the lower of the slip rates that damping and friction alone allow. For a small t, which
+    !> may be too small for the method, friction is linear in v.
     pure subroutine solve_balance(tau, pressure, damping, surface, theta, ln_v, status)
         real(wp), intent(in) :: tau, pressure, damping   !! >= 0
         class(rate_state_law), intent(in) :: surface
@@ -278,8 +279,10 @@ contains
         real(wp), intent(out) :: ln_v
         integer, intent(out) :: status                   !! ok or no convergence
         real(wp), parameter :: small = 1.0e-9_wp         !! the next error is below its square
+        real(wp), parameter :: linear = 1.0e-9_wp        !! sinh(t) is t to the last bit
         integer, parameter :: max_iterations = 200
         real(wp) :: scale, shift, t, damped, step
+        logical :: is_linear
         integer :: iteration
 
         status = friction_ok
@@ -287,15 +290,21 @@ contains
         if (.not. tau > 0.0_wp) return
         status = friction_no_convergence
         scale = max(surface%a * pressure, least_scale)
-        t = max(tau / scale, tiny(t))
+        t = tau / scale
         shift = state_exponent(surface%a, surface%b, surface%f0, log(surface%v0) + log(theta) &
             - log(surface%d_c)) - log(2.0_wp * surface%v0)
-        ln_v = log_sinh(t) - shift
-        if (damping > 0.0_wp) ln_v = min(ln_v, log(tau) - log(damping))
+        is_linear = t < linear
+        if (is_linear) then
+            ln_v = log(tau) - log(scale) - shift
+            if (damping > 0.0_wp) ln_v = ln_v - log_1_plus_exp(log(damping) - log(scale) - shift)
+        else
+            ln_v = log_sinh(t) - shift
+            if (damping > 0.0_wp) ln_v = min(ln_v, log(tau) - log(damping))
+        end if
         if (ln_v > ln_most_rate) return
         status = friction_ok
         ln_v = max(ln_v, standstill)
-        if (ln_v <= standstill .or. .not. damping > 0.0_wp) return
+        if (is_linear .or. ln_v <= standstill .or. .not. damping > 0.0_wp) return
         do iteration = 1, max_iterations
             damped = exp(ln_v) * (damping / scale)
             step = (damped + asinh_exp(ln_v + shift) - t) &
@@ -305,6 +314,14 @@ contains
         end do
         status = friction_no_convergence
     end subroutine solve_balance
+
+    !> ln(1 + e^x).
+    pure function log_1_plus_exp(x) result(y)
+        real(wp), intent(in) :: x
+        real(wp) :: y
+
+        y = max(x, 0.0_wp) + log(1.0_wp + exp(-abs(x)))
+    end function log_1_plus_exp
 
     !> ln(sinh(t)) for t > 0.
     pure function log_sinh(t) result(y)
