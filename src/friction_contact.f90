@@ -94,7 +94,7 @@ contains
         trial%q(2) = old%u_et(2) + motion%du(3)
         loaded = 1.0_wp
         simple = .not. (constants%damping > 0.0_wp .or. old%u_n > 0.0_wp)
-        if (.not. simple) call load(surface%cohesion, constants, motion, old, new, loaded, trial)
+        if (.not. simple) call load(constants, motion, old, new, loaded, trial)
         call tangential_update(surface, constants%plane, motion, old, trial, new, answer, status)
         if (status < 0) return
         if (.not. motion%pressure_given) answer%by_pressure = -constants%normal &
@@ -148,8 +148,7 @@ contains
 
     !> Only the part of an increment after touchdown loads a contact that was open, unless the
     !> pressure is given: the share of that.
-    pure function share_after_touchdown(cohesion, motion, old, new) result(share)
-        real(wp), intent(in) :: cohesion          !! [F/L^2]
+    pure function share_after_touchdown(motion, old, new) result(share)
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old    !! with a gap
         type(contact_point), intent(in) :: new    !! closed
@@ -157,15 +156,14 @@ contains
 
         share = 1.0_wp
         if (motion%pressure_given) return
-        if (cohesion > 0.0_wp .and. .not. old%u_n > motion%blur) return   ! touches from the start
+        if (.not. old%u_n > motion%blur) return   ! touches from the start
         share = min(new%u_n, 0.0_wp) / motion%du(1)
     end function share_after_touchdown
 
     !> What loads a contact that was open, or has a damper. Spring and damper side by side, by
     !> backward Euler, are one spring of a higher stiffness with a shorter displacement
     !> (docs/theory.md, section 16).
-    pure subroutine load(cohesion, constants, motion, old, new, loaded, trial)
-        real(wp), intent(in) :: cohesion           !! [F/L^2]
+    pure subroutine load(constants, motion, old, new, loaded, trial)
         type(contact_constants), intent(in) :: constants
         type(contact_motion), intent(in) :: motion
         type(contact_point), intent(in) :: old
@@ -173,7 +171,7 @@ contains
         real(wp), intent(inout) :: loaded   !! in: 1, out: share of the motion that loads it [-]
         type(tangential_trial), intent(inout) :: trial   !! out: q and its stiffness
 
-        if (old%u_n > 0.0_wp) loaded = share_after_touchdown(cohesion, motion, old, new)
+        if (old%u_n > 0.0_wp) loaded = share_after_touchdown(motion, old, new)
         trial%q = old%u_et
         if (constants%damping > 0.0_wp) then
             trial%stiffness = constants%tangential + damping_per_time(constants%damping, motion%dt)

@@ -6,7 +6,7 @@ module friction_continuous
     use friction_contact, only : contact_constants, contact_point
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, law_traits, load_rates
-    use friction_return_map, only : middle, unload_to, unloaded, unloading
+    use friction_return_map, only : middle, unloaded, unloading
     implicit none
     private
 
@@ -139,8 +139,8 @@ contains
     end subroutine balance_damper
 
     !> The first balance of the law's resistance at a slip rate with what is left of the pull at
-    !> that: Newton's method, bracketed. While a shear cap holds, the law has no say; from there on
-    !> the laws' resistances meet the pull once (they rise with the slip rate, or fall ever slower).
+    !> that: Newton's method, bracketed. The laws' resistances meet the pull once, since they rise
+    !> with the slip rate, or fall ever slower; under a shear cap, too.
     pure subroutine balance(surface, spring, pressure, state, x, rate, resistance, fails)
         class(law), intent(in) :: surface
         class(unloading), intent(in) :: spring   !! with slip rates for slips
@@ -157,7 +157,6 @@ contains
         integer :: iteration
 
         low = 0.0_wp
-        if (spring%trial > surface%tau_max) call unload_to(surface%tau_max, spring, low)
         high = spring%x_end
         x = low
         do iteration = 1, max_iterations
@@ -171,7 +170,6 @@ contains
             if (misfit > 0.0_wp) then
                 low = x
             else
-                if (x <= low) return   ! the cap holds
                 high = x
             end if
             if (high - low <= 2.0_wp * round_off * high) return

@@ -20,7 +20,7 @@ module friction_return_map
     implicit none
     private
 
-    public :: middle, return_along, return_map, unload_to, unloading, unloaded
+    public :: middle, return_along, return_map, unloading, unloaded
 
     !> A point of the curve along which the spring unloads while the surface slides.
     type :: unloaded
