@@ -132,8 +132,8 @@ contains
             if (abs(trial%tau(i) - strength * (1.0_wp + verge)) < unsure * strength) valid = -1.0_wp
             fall = trial%p(i) * inc%kappa * trial%c(i)
             if (inc%alpha_t * inc%w0**2 <= fall) valid = min(valid, -trial%slides(i))
-            if (trial%p(i) * (abs(trial%q1(i)) + abs(trial%q2(i))) > 0.0_wp) valid = min(valid, &
-                trial%tau(i) - smallest)
+            if (abs(trial%q1(i)) + abs(trial%q2(i)) > 0.0_wp) valid = min(valid, trial%tau(i) &
+                - smallest)
             left(i) = 0
             if (valid < 0.0_wp) left(i) = 1
             n_left = n_left + left(i)
