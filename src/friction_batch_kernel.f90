@@ -33,7 +33,6 @@ module friction_batch_kernel
                                      !! without a cap; else -1 [F/L^2]
         real(wp) :: length(lanes)    !! of q, where two coefficients count [L]
         real(wp) :: stiffness(lanes) !! fall of T_eq with slip [F/L^3]
-        logical :: follows           !! is there such a law?
         integer(c_int) :: slides(lanes)   !! 1 where the traction is beyond the strength, else 0
     end type trial_block
 
@@ -171,10 +170,9 @@ contains
         call load(task, constants, du, statev, trial, valid)
         if (counts_pressure_before(task)) call find_pressure_before(task, constants, statev, trial)
         call rest_law(task, constants, trial%rest)
-        trial%follows = follows_path(task)
-        if (trial%follows) trial%start = -1.0_wp
+        trial%start = -1.0_wp
         if (task%cohesion > 0.0_wp) call add_cohesion(task, du, statev, trial%rest, valid)
-        if (trial%follows .and. task%viscous <= 0.0_wp) then
+        if (follows_path(task) .and. task%viscous <= 0.0_wp) then
             call leave_reloading(task, constants, statev, trial, valid)
         end if
         n_slides = 0
@@ -534,8 +532,8 @@ contains
         real(wp), intent(in) :: own_strength(lanes)   !! of the law without the cap [F/L^2]
         type(slide_block), intent(inout) :: block
         real(wp), parameter :: of_exponents = 1.0e-8_wp   ! round-off of what follows from them
-        real(wp), dimension(lanes) :: trial, held
-        real(wp) :: slip, near, verge_of_cap
+        real(wp), dimension(lanes) :: trial, held, slip   ! at the cap
+        real(wp) :: near, verge_of_cap
         integer :: i
 
         if (iand(task%options, with_cap) == 0) then
@@ -544,6 +542,8 @@ contains
         end if
         do i = 1, block%n
             trial(i) = block%trial(i)
+            ! a quotient of all points: under a condition it would be one of zeros for the others
+            slip(i) = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
             held(i) = 0.0_wp
             if (trial(i) <= own_strength(i) * (1.0_wp + verge)) held(i) = 1.0_wp
             if (held(i) > 0.0_wp) block%trial(i) = 1.01_wp * own_strength(i)   ! of no account
@@ -557,8 +557,7 @@ contains
             verge_of_cap = min(abs(block%resistance(i) - constants(i, c_cap)), abs(trial(i) &
                 - constants(i, c_cap))) - near * constants(i, c_cap)
             if (verge_of_cap <= 0.0_wp) block%left(i) = 1.0_wp
-            slip = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
-            if (held(i) > 0.0_wp) block%slip(i) = slip
+            if (held(i) > 0.0_wp) block%slip(i) = slip(i)
         end do
         if (any(held(:block%n) > 0.0_wp)) call hold_at_cap(task, constants, held, block)
     end subroutine slide
@@ -720,9 +719,7 @@ contains
             statev(i, 4) = share * trial%q2(i)
             statev(i, 7) = statev(i, 7) + slip
             mean = resistance
-            if (trial%follows) then
-                if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
-            end if
+            if (trial%start(i) >= 0.0_wp) mean = 0.5_wp * (mean + trial%start(i))
             statev(i, 8) = statev(i, 8) + mean * slip * answer%work_ratio(i)
         end do
         call write_answer(task, constants, trial, answer, traction, tangent)

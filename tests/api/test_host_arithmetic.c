@@ -6,16 +6,27 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef int update_batch(int64_t n, int ndir, const double *du, double dtime, int nprops, const double *props,
                          int nstatv, double *statev, double *traction, double *tangent, int *status);
 typedef int update(int ndir, const double *du, double dtime, int nprops, const double *props, int nstatv,
                    double *statev, double *traction, double *tangent);
 
-enum { n = 4096, increments = 6 };
+enum { n = 1024, increments = 6, laws = 8, most_props = 14 };
 static double du[3 * n], statev[8 * n], traction[3 * n], tangent[9 * n];
 static int status[n];
-static const double props[9] = {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3};
+/* Laws without and with a cap, two coefficients, cohesion, a damper. */
+static const double props[laws][most_props] = {
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3},
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 0, 0, 1.5},
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 1, 0, 0, 0.6, 1},
+    {2, 1000, 800, 0.45, 1.5, 0.6, 1, 0.2, 3},
+    {3, 1000, 800, 0.45, 0.25, 0.1, 1.5},
+    {4, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 1, 0.1, 1.5},
+    {5, 1000, 800, 0.45, 0.25, 0.1, 1.5},
+    {8, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 0.1, 0, 0.1, 1.5}};
+static const int nprops[laws] = {9, 12, 14, 9, 7, 11, 7, 12};
 
 static int denormals_live(void)
 {
@@ -50,16 +61,17 @@ static void random_increment(void)
     }
 }
 
-/* Exceptions that batches, or the same points one by one, raise. */
-static int exceptions(update_batch *batch, update *one)
+/* Exceptions that batches, or the same points one by one, raise under a law. */
+static int exceptions(update_batch *batch, update *one, int law)
 {
     const int serious = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
     int raised = 0, k, i, j;
 
+    memset(statev, 0, sizeof statev);
     for (k = 0; k < increments; k++) {
         random_increment();
         feclearexcept(FE_ALL_EXCEPT);
-        batch(n, 3, du, 0.1, 9, props, 8, statev, traction, tangent, status);
+        batch(n, 3, du, 0.1, nprops[law], props[law], 8, statev, traction, tangent, status);
         raised |= fetestexcept(serious);
         feclearexcept(FE_ALL_EXCEPT);
         for (i = 0; i < n; i++) {
@@ -69,7 +81,7 @@ static int exceptions(update_batch *batch, update *one)
                 s[j] = statev[j * n + i];
             for (j = 0; j < 3; j++)
                 d[j] = du[j * n + i];
-            one(3, d, 0.1, 9, props, 8, s, t, c);
+            one(3, d, 0.1, nprops[law], props[law], 8, s, t, c);
         }
         raised |= fetestexcept(serious) << 16;
     }
@@ -81,7 +93,7 @@ int main(int argc, char **argv)
     void *library;
     update_batch *batch;
     update *one;
-    int raised;
+    int raised, law;
 
     if (argc < 2 || !denormals_live())
         return 2;
@@ -98,10 +110,13 @@ int main(int argc, char **argv)
     *(void **)&one = dlsym(library, "friction_update");
     if (!batch || !one)
         return 2;
-    raised = exceptions(batch, one);
-    if (raised) {
-        fprintf(stderr, "floating-point exceptions are raised: batch %x, one point %x\n", raised & 0xffff, raised >> 16);
-        return 1;
+    for (law = 0; law < laws; law++) {
+        raised = exceptions(batch, one, law);
+        if (raised) {
+            fprintf(stderr, "constants %d: floating-point exceptions are raised: batch %x, one point %x\n", law,
+                    raised & 0xffff, raised >> 16);
+            return 1;
+        }
     }
     if (!denormals_live()) {
         fprintf(stderr, "calling the library flushes denormals to zero\n");
