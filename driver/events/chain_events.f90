@@ -146,14 +146,9 @@ contains
         class(chain_finder), intent(inout) :: self
         integer, intent(in) :: k
         type(chain_event), intent(in) :: this
-        type(chain_event), allocatable :: more(:)
         integer :: i
 
-        if (self%count == size(self%events)) then
-            allocate (more(2 * self%count))
-            more(:self%count) = self%events
-            call move_alloc(more, self%events)
-        end if
+        if (self%count == size(self%events)) self%events = [self%events, self%events]   ! room
         do i = self%count, k, -1
             self%events(i + 1) = self%events(i)
         end do

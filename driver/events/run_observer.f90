@@ -1,7 +1,6 @@
 !> Who watches a run: files that grow, events that are found, a progress bar. The simulation knows
 !> none of them by name.
 module run_observer
-    use archive_file, only : archive
     use chain_events, only : chain_event
     use slider_system, only : slider_state
     use slip_events, only : slip_event
@@ -27,7 +26,7 @@ module run_observer
 
     type, abstract :: observer
     contains
-        procedure :: begin, finish, visit
+        procedure :: begin, finish
         procedure(see_step), deferred :: see
     end type observer
 
@@ -62,12 +61,6 @@ contains
         type(slider_state), intent(in) :: last
         type(step_news), intent(inout) :: news
     end subroutine finish
-
-    !> Reads or writes what has to be kept for a run that is resumed.
-    subroutine visit(self, file)
-        class(observer), intent(inout) :: self
-        type(archive), intent(inout) :: file
-    end subroutine visit
 
     !> Before a step: nothing is known of it.
     pure subroutine clear(self)

@@ -2,12 +2,12 @@
 !> `time_column`, its name in the file, and `time_factor`, by which its numbers are multiplied.
 module column_keys
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use csv_table, only : column_request
+    use csv_table, only : column_request, csv => table
     use namelist_input, only : namelist_file, not_zero
     implicit none
     private
 
-    public :: read_column_keys, refuse_column_keys
+    public :: check_factors, read_column_keys, refuse_column_keys, refuse_table
 
 contains
 
@@ -44,5 +44,32 @@ contains
             end do
         end do
     end subroutine refuse_column_keys
+
+    !> A factor needs its column.
+    subroutine check_factors(file, group, names, table)
+        type(namelist_file), intent(in) :: file
+        character(len=*), intent(in) :: group
+        character(len=*), intent(in) :: names(:)
+        type(csv), intent(inout) :: table
+        integer :: i
+
+        do i = 1, size(names)
+            if (table%column(trim(names(i))) == 0 .and. file%given(group, trim(names(i)) &
+                // '_factor')) call table%add_fault(table%header_line, "no column '" &
+                // trim(names(i)) // "' for its factor")
+        end do
+    end subroutine check_factors
+
+    !> The faults of a table are those of the key that names it.
+    subroutine refuse_table(file, group, key, table)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        type(csv), intent(in) :: table
+        integer :: i
+
+        do i = 1, size(table%faults)
+            call file%reject(group, key, table%faults(i)%text)
+        end do
+    end subroutine refuse_table
 
 end module column_keys

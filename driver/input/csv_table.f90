@@ -13,7 +13,7 @@ module csv_table
     use number_reader, only : read_number
     use number_text, only : whole_text
     use printable_text, only : lower, printable
-    use whole_file, only : read_whole_file
+    use whole_file, only : next_line, read_whole_file
     implicit none
     private
 
@@ -21,7 +21,7 @@ module csv_table
 
     real(dp), parameter, public :: largest = 1.0e100_dp   !! number that is taken
     integer, parameter :: most_faults = 20
-    character(len=1), parameter :: line_feed = new_line('a'), tab = achar(9)
+    character(len=1), parameter :: tab = achar(9)
     character(len=*), parameter :: separators = tab // ';, '   ! in the order of preference
 
     !> A column that the caller can use.
@@ -92,7 +92,7 @@ contains
         character(len=:), allocatable :: text, problem
         type(file_form) :: form
         type(line_cells) :: cells
-        integer :: first, last, line, rows
+        integer :: first, last, line, rows, i
 
         call read_whole_file(path, text, problem)
         allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
@@ -104,7 +104,11 @@ contains
         if (size(read_in%faults) > 0) return
         if (count(form%places > 0) < min(2, size(requests))) return
         deallocate (read_in%values, read_in%lines)
-        allocate (read_in%values(size(read_in%names), 64), read_in%lines(64))
+        line = 1
+        do i = 1, len(text)
+            if (text(i:i) == new_line('a')) line = line + 1
+        end do
+        allocate (read_in%values(size(read_in%names), line), read_in%lines(line))
         rows = 0
         line = 0
         last = -1
@@ -123,21 +127,6 @@ contains
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
     end subroutine read_table
-
-    !> Moves on to the next line.
-    pure subroutine next_line(text, first, last, line)
-        character(len=*), intent(in) :: text
-        integer, intent(out) :: first     !! character of the line
-        integer, intent(inout) :: last    !! of the line before, then of this one; -1 at the start
-        integer, intent(inout) :: line    !! number, from 1
-        integer :: length
-
-        first = last + 2
-        length = index(text(first:), line_feed) - 1
-        last = first + length - 1
-        if (length < 0) last = len(text)
-        line = line + 1
-    end subroutine next_line
 
     !> Empty, or a comment.
     pure function is_no_row(line) result(yes)
@@ -389,7 +378,6 @@ contains
             call read_in%add_fault(line, 'has not as many cells as the header' // trim(numbers))
             return
         end if
-        if (rows == size(read_in%lines)) call double_room(read_in)
         rows = rows + 1
         read_in%lines(rows) = line
         column = 0
@@ -490,20 +478,6 @@ contains
         if (yes) yes = word(first:first) /= '0' .and. verify(word(first:comma - 1), digits) == 0 &
             .and. verify(word(comma + 1:), digits) == 0
     end function may_part_thousands
-
-    subroutine double_room(read_in)
-        type(table), intent(inout) :: read_in
-        real(dp), allocatable :: values(:, :)
-        integer, allocatable :: lines(:)
-        integer :: n
-
-        n = size(read_in%lines)
-        allocate (values(size(read_in%names), 2 * n), lines(2 * n))
-        values(:, :n) = read_in%values
-        lines(:n) = read_in%lines
-        call move_alloc(values, read_in%values)
-        call move_alloc(lines, read_in%lines)
-    end subroutine double_room
 
     ! ---- cells -------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 !> The group &drive of the input file: the loading programme, from lists or from a file.
 module drive_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use column_keys, only : read_column_keys, refuse_column_keys
+    use column_keys, only : check_factors, read_column_keys, refuse_column_keys, refuse_table
     use csv_table, only : column_request, largest, read_table, table
     use loading_programme, only : programme
     use namelist_input, only : any_number, at_least, above, namelist_file
@@ -153,16 +153,13 @@ contains
         call read_table(file%beside(path), requests, rows)
         if (size(rows%faults) == 0) call check_columns(file, rows)
         if (size(rows%faults) == 0) call check_rows(rows)
-        do i = 1, size(rows%faults)
-            call file%reject(group, 'file', rows%faults(i)%text)
-        end do
+        call refuse_table(file, group, 'file', rows)
         if (size(file%faults) == faults_before) call take_rows(rows, normal_traction, drive)
     end subroutine read_drive_file
 
     subroutine check_columns(file, rows)
         type(namelist_file), intent(in) :: file
         type(table), intent(inout) :: rows
-        integer :: i
 
         if (rows%column('time') == 0) call rows%add_fault(rows%header_line, &
             "column 'time' is missing: there are " // rows%titles)
@@ -173,11 +170,7 @@ contains
             call rows%add_fault(rows%header_line, "takes one of the columns 'velocity' and " &
                 // "'displacement': choose by velocity_column or displacement_column")
         end if
-        do i = 1, size(columns)
-            if (rows%column(trim(columns(i))) > 0) cycle
-            if (file%given(group, trim(columns(i)) // '_factor')) call rows%add_fault( &
-                rows%header_line, "no column '" // trim(columns(i)) // "' for its factor")
-        end do
+        call check_factors(file, group, columns, rows)
         if (size(rows%faults) == 0 .and. size(rows%lines) < 2) call rows%add_fault(0, &
             'has fewer than two rows of numbers')
     end subroutine check_columns

@@ -6,7 +6,7 @@
 !> reader of &friction, as if they stood in the input, so that each has its law's rules.
 module fault_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use archive_file, only : mix
+    use archive_file, only : mix, mix_text
     use csv_table, only : table_reader
     use fault_settings, only : fault_plan
     use friction_mod, only : friction_facts, onset_drops
@@ -273,25 +273,13 @@ contains
         character(len=*), intent(in) :: listing   !! of the input
         type(fault_plan), intent(in) :: plan
         integer(int64) :: number
-        integer :: i, k
 
         number = 0
-        do i = 1, len(listing)
-            call mix([int(iachar(listing(i:i)), int64)], number)
-        end do
-        if (allocated(plan%constants%values)) then
-            do k = 1, size(plan%constants%values, 3)
-                do i = 1, size(plan%constants%values, 2)
-                    call mix(transfer(plan%constants%values(:, i, k), [0_int64]), number)
-                end do
-            end do
-        end if
-        if (.not. allocated(plan%initial%values)) return
-        do k = 1, size(plan%initial%values, 3)
-            do i = 1, size(plan%initial%values, 2)
-                call mix(transfer(plan%initial%values(:, i, k), [0_int64]), number)
-            end do
-        end do
+        call mix_text(listing, number)
+        if (allocated(plan%constants%values)) call mix(transfer(plan%constants%values, [number]), &
+            number)
+        if (allocated(plan%initial%values)) call mix(transfer(plan%initial%values, [number]), &
+            number)
     end function fingerprint_of
 
 end module fault_reader

@@ -421,7 +421,6 @@ contains
     subroutine note(self, group, key)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        type(known_key), allocatable :: more(:)
         integer :: i
 
         do i = 1, size(self%groups)
@@ -431,11 +430,7 @@ contains
             if (self%keys(i)%key /= key .or. self%keys(i)%group /= group) cycle
             if (.not. allocated(self%keys(i)%hint)) return
         end do
-        if (self%n_keys == size(self%keys)) then
-            allocate (more(2 * self%n_keys))
-            more(:self%n_keys) = self%keys
-            call move_alloc(more, self%keys)
-        end if
+        if (self%n_keys == size(self%keys)) self%keys = [self%keys, self%keys]   ! room
         self%n_keys = self%n_keys + 1
         self%keys(self%n_keys)%group = group
         self%keys(self%n_keys)%key = key

@@ -5,6 +5,7 @@ module number_reader
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_null_char, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use c_library, only : c_strtod
+    use printable_text, only : lower
     implicit none
     private
 
@@ -95,17 +96,12 @@ contains
         real(dp), intent(out) :: value
         logical, intent(out) :: is_number
         character(len=8) :: word
-        integer :: letter, i
 
         value = 0.0_dp
         is_number = .false.
         if (len(text) == 0 .or. len(text) > 9) return
-        word = text
-        if (scan(text, '+-') == 1) word = text(2:)
-        do i = 1, len(word)
-            letter = iachar(word(i:i))
-            if (letter >= iachar('A') .and. letter <= iachar('Z')) word(i:i) = achar(letter + 32)
-        end do
+        word = lower(text)
+        if (scan(text, '+-') == 1) word = lower(text(2:))
         is_number = word == 'nan' .or. word == 'inf' .or. word == 'infinity'
         if (word == 'nan') then
             value = ieee_value(value, ieee_quiet_nan)

@@ -2,7 +2,7 @@
 !> rules.
 module point_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use column_keys, only : read_column_keys, refuse_column_keys
+    use column_keys, only : check_factors, read_column_keys, refuse_column_keys, refuse_table
     use csv_table, only : column_request, csv => table, read_table
     use law_input, only : read_friction
     use loading_path, only : path
@@ -144,9 +144,7 @@ contains
         call read_table(file%beside(name), requests, table)
         if (size(table%faults) == 0) call check_columns(file, loading%ndir, table)
         if (size(table%faults) == 0) call check_times(table)
-        do i = 1, size(table%faults)
-            call file%reject(group, 'file', table%faults(i)%text)
-        end do
+        call refuse_table(file, group, 'file', table)
         if (size(file%faults) == faults_before) call take_table(table, substeps, loading)
 
     contains
@@ -182,11 +180,7 @@ contains
                 // pair // ', and not both: choose one by its key, u_' // trim(directions(i)) &
                 // '_column or t_' // trim(directions(i)) // '_column')
         end do
-        do i = 1, 2 * ndir + 1
-            if (table%column(trim(columns(i))) > 0) cycle
-            if (file%given(group, trim(columns(i)) // '_factor')) call table%add_fault( &
-                table%header_line, "no column '" // trim(columns(i)) // "' for its factor")
-        end do
+        call check_factors(file, group, columns(:2 * ndir + 1), table)
         if (size(table%faults) == 0 .and. size(table%lines) == 0) call table%add_fault(0, &
             'must hold rows of numbers below the names')
     end subroutine check_columns

@@ -4,6 +4,7 @@
 !> it.
 module profile_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use column_keys, only : refuse_table
     use csv_table, only : column_request, csv => table, read_table, table_reader
     use grid_map, only : map_on_grid, nodes_up_to
     use namelist_input, only : namelist_file
@@ -209,9 +210,7 @@ contains
             call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
             return
         end if
-        do i = 1, size(read_in%faults)
-            call file%reject(group, key, read_in%faults(i)%text)
-        end do
+        call refuse_table(file, group, key, read_in)
     end subroutine read_columns
 
     !> Places along an axis that a file has; 0 if it does not have the axis.

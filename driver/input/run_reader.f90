@@ -1,7 +1,7 @@
 !> Reads what a run is told to do: the groups and keys of the input file, their defaults and rules.
 module run_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use archive_file, only : mix
+    use archive_file, only : mix, mix_text
     use block_reader, only : check_blocks_at_start, read_block_friction
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
@@ -11,6 +11,7 @@ module run_reader
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
     use unit_reader, only : read_units
+    use whole_file, only : next_line
     implicit none
     private
 
@@ -74,17 +75,16 @@ contains
         if (file%given(group, 'normal_mass')) then
             call file%get_real(group, 'normal_mass', run%across%mass, above(0.0_dp))
             if (.not. run%mass > 0.0_dp) call file%reject(group, 'normal_mass', 'needs a mass > 0')
+        else
+            do i = 1, size(others)
+                call file%refuse(group, trim(others(i)), 'needs a normal_mass')
+            end do
         end if
         call file%get_real(group, 'normal_stiffness', run%across%stiffness, at_least(0.0_dp), &
             default=0.0_dp)
         call file%get_real(group, 'normal_damping', run%across%damping, at_least(0.0_dp), &
             default=0.0_dp)
         call file%get_real(group, 'tilt_stiffness', run%across%tilt, any_number(), default=0.0_dp)
-        do i = 1, size(others)
-            if (file%given(group, 'normal_mass')) exit
-            if (file%given(group, trim(others(i)))) call file%reject(group, trim(others(i)), &
-                'needs a normal_mass')
-        end do
         if (run%across%tilt**2 > run%stiffness * run%across%stiffness) call file%reject(group, &
             'tilt_stiffness', 'must not exceed sqrt(stiffness normal_stiffness) in magnitude')
     end subroutine read_normal_motion
@@ -107,25 +107,22 @@ contains
         character(len=19), parameter :: without(5) = ['&output checkpoint ', &
             '&output table_limit', '&output length_unit', '&output force_unit ', &
             '&output time_unit  ']
-        integer :: start, length, i, k
+        integer :: first, last, line, i
 
         number = 0
-        start = 1
-        do while (start <= len(listing))
-            length = index(listing(start:), new_line('a'))
-            associate (line => listing(start:start + length - 1))
-                if (all([(index(line, trim(without(i)) // ' ') /= 1, i = 1, size(without))])) then
-                    call mix([(int(iachar(line(i:i)), int64), i = 1, length)], number)
+        last = -1
+        line = 0
+        do while (last < len(listing) - 1)
+            call next_line(listing, first, last, line)
+            associate (text => listing(first:last + 1))
+                if (all([(index(text, trim(without(i)) // ' ') /= 1, i = 1, size(without))])) then
+                    call mix_text(text, number)
                 end if
             end associate
-            start = start + length
         end do
         if (allocated(run%chain%load)) call mix(transfer(run%chain%load, [number]), number)
-        if (allocated(run%chain%constants)) then
-            do k = 1, size(run%chain%constants, 2)
-                call mix(transfer(run%chain%constants(:, k), [number]), number)
-            end do
-        end if
+        if (allocated(run%chain%constants)) call mix(transfer(run%chain%constants, [number]), &
+            number)
         associate (drive => run%drive)
             if (allocated(drive%start)) call mix(transfer([drive%start, drive%velocity, &
                 drive%acceleration, drive%normal, drive%normal_rate], [number]), number)

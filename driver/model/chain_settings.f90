@@ -1,7 +1,7 @@
 !> A chain of blocks: what couples them, in what they differ, and how their first places scatter.
 module chain_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use archive_file, only : mix
+    use archive_file, only : mix_text
     use slider_system, only : ends_free
     implicit none
     private
@@ -50,10 +50,9 @@ contains
         real(dp), intent(in) :: scatter        !! relative [-]
         real(dp) :: factors(blocks%n_blocks)   !! one a block [-]
         integer(int64) :: stream
-        integer :: i
 
         stream = 0
-        call mix([(int(iachar(name(i:i)), int64), i = 1, len(name))], stream)
+        call mix_text(name, stream)
         factors = 1.0_dp + scatter * random_numbers(blocks%seed, stream, blocks%n_blocks)
     end function scatter_of_constant
 

@@ -110,13 +110,8 @@ contains
     subroutine next(self, time)
         class(field_parts), intent(inout) :: self
         real(dp), intent(in) :: time
-        real(dp), allocatable :: longer(:)
 
-        if (self%records == size(self%times)) then
-            allocate (longer(2 * self%records))
-            longer(:self%records) = self%times
-            call move_alloc(longer, self%times)
-        end if
+        if (self%records == size(self%times)) self%times = [self%times, self%times]   ! room
         self%records = self%records + 1
         self%times(self%records) = time
     end subroutine next

@@ -7,6 +7,7 @@ module picture
     use embedded_texts, only : get_text
     use number_text, only : short_text, whole_text
     use platform, only : have_command, shell_word
+    use printable_text, only : replaced
     use text_file, only : output_file
     use unit_names, only : units
     implicit none
@@ -47,14 +48,9 @@ contains
     subroutine set_text(self, name, value)
         class(picture_values), intent(inout) :: self
         character(len=*), intent(in) :: name, value
-        integer :: i
 
-        self%text = self%text // name // " = '"
-        do i = 1, len(value)
-            self%text = self%text // value(i:i)
-            if (value(i:i) == "'") self%text = self%text // "'"
-        end do
-        self%text = self%text // "'" // new_line('a')
+        self%text = self%text // name // " = '" // replaced(value, "'", "''") // "'" &
+            // new_line('a')
     end subroutine set_text
 
     subroutine set_number(self, name, value)

@@ -4,7 +4,7 @@
 module sweep_journal
     use platform, only : rename_file
     use text_file, only : output_file
-    use whole_file, only : read_whole_file
+    use whole_file, only : next_line, read_whole_file
     implicit none
     private
 
@@ -15,10 +15,9 @@ module sweep_journal
     end type text_line
 
     type :: journal
-        private
         type(output_file) :: file
     contains
-        procedure :: open, append, failed, finish
+        procedure :: open, append
     end type journal
 
     character(len=*), parameter :: mark = '# '   !! starts a line of the input
@@ -71,17 +70,17 @@ contains
         type(text_line), allocatable, intent(out) :: rows(:)
         character(len=:), allocatable :: text, problem
         type(text_line) :: line
-        integer :: start, length
+        integer :: first, last, number
 
         input = ''
         allocate (rows(0))
         call read_whole_file(name, text, problem)
-        start = 1
+        last = -1
+        number = 0
         do
-            length = index(text(start:), new_line('a')) - 1
-            if (length < 0) exit
-            line%text = text(start:start + length - 1)
-            start = start + length + 1
+            call next_line(text, first, last, number)
+            if (last == len(text)) exit
+            line%text = text(first:last)
             if (index(line%text, mark) == 1) then
                 input = input // line%text(len(mark) + 1:) // new_line('a')
             else
@@ -93,13 +92,13 @@ contains
     subroutine write_marked(file, input)
         type(output_file), intent(inout) :: file
         character(len=*), intent(in) :: input
-        integer :: start, length
+        integer :: first, last, number
 
-        start = 1
-        do while (start <= len(input))
-            length = index(input(start:), new_line('a')) - 1
-            call file%write_line(mark // input(start:start + length - 1))
-            start = start + length + 1
+        last = -1
+        number = 0
+        do while (last < len(input) - 1)
+            call next_line(input, first, last, number)
+            call file%write_line(mark // input(first:last))
         end do
     end subroutine write_marked
 
@@ -111,19 +110,5 @@ contains
         call self%file%write_line(row)
         call self%file%flush_lines()
     end subroutine append
-
-    !> Has a row been lost on its way to the disk?
-    pure function failed(self) result(lost)
-        class(journal), intent(in) :: self
-        logical :: lost
-
-        lost = self%file%failed
-    end function failed
-
-    subroutine finish(self)
-        class(journal), intent(inout) :: self
-
-        call self%file%finish()
-    end subroutine finish
 
 end module sweep_journal

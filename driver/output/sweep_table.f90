@@ -11,7 +11,7 @@ module sweep_table
     implicit none
     private
 
-    public :: failure_text, late_from, point_text, result_text, table_header
+    public :: failure_text, key_names, late_from, point_text, result_text, table_header
 
     character(len=*), parameter :: results_header = 'status,regime,events,late_events,period,' &
         // 'stress_drop,peak_velocity,mean_force,energy_defect,stability,growth_rate,' &
@@ -32,14 +32,21 @@ contains
     pure function table_header(axes) result(text)
         type(sweep_axis), intent(in) :: axes(:)
         character(len=:), allocatable :: text
+
+        text = key_names(axes) // results_header
+    end function table_header
+
+    !> The names of the keys of a sweep, as the first columns.
+    pure function key_names(axes) result(names)
+        type(sweep_axis), intent(in) :: axes(:)
+        character(len=:), allocatable :: names
         integer :: i
 
-        text = ''
+        names = ''
         do i = 1, size(axes)
-            text = text // axes(i)%name // ','
+            names = names // axes(i)%name // ','
         end do
-        text = text // results_header
-    end function table_header
+    end function key_names
 
     !> The start of a row, which tells the combination.
     pure function point_text(values) result(text)

@@ -7,7 +7,7 @@ module archive_file
     implicit none
     private
 
-    public :: archive, mix
+    public :: archive, mix, mix_text
 
     !> In the file everything is a word of 64 bits; the last one is a checksum of those before.
     type :: archive
@@ -231,5 +231,16 @@ contains
             mixed = ieor(mixed, shiftr(mixed, 7))
         end do
     end subroutine mix
+
+    !> Takes the letters of a text into it.
+    pure subroutine mix_text(text, mixed)
+        character(len=*), intent(in) :: text
+        integer(int64), intent(inout) :: mixed
+        integer :: i
+
+        do i = 1, len(text)
+            call mix([int(iachar(text(i:i)), int64)], mixed)
+        end do
+    end subroutine mix_text
 
 end module archive_file

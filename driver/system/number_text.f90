@@ -1,6 +1,7 @@
 !> Numbers as text, each way once.
 module number_text
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
+    use printable_text, only : replaced
     implicit none
     private
 
@@ -160,14 +161,8 @@ contains
     pure function quoted_field(text) result(field)
         character(len=*), intent(in) :: text
         character(len=:), allocatable :: field
-        integer :: i
 
-        field = '"'
-        do i = 1, len(text)
-            field = field // text(i:i)
-            if (text(i:i) == '"') field = field // '"'
-        end do
-        field = field // '"'
+        field = '"' // replaced(text, '"', '""') // '"'
     end function quoted_field
 
 end module number_text

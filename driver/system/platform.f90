@@ -5,6 +5,7 @@ module platform
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_mkdir, c_puts, &
         c_readlink, c_remove, c_rename, c_signal, c_truncate
+    use printable_text, only : replaced
     implicit none
     private
 
@@ -208,17 +209,8 @@ contains
     pure function shell_word(path) result(word)
         character(len=*), intent(in) :: path
         character(len=:), allocatable :: word
-        integer :: i
 
-        word = "'"
-        do i = 1, len(path)
-            if (path(i:i) == "'") then
-                word = word // "'\''"
-            else
-                word = word // path(i:i)
-            end if
-        end do
-        word = word // "'"
+        word = "'" // replaced(path, "'", "'\''") // "'"
         if (path(1:1) == '-') word = './' // word
     end function shell_word
 

@@ -1,9 +1,9 @@
-!> Words of a file as a message shows them.
+!> Words of a file as a message shows them, and what else is done to texts.
 module printable_text
     implicit none
     private
 
-    public :: lower, printable
+    public :: lower, printable, replaced
 
 contains
 
@@ -53,6 +53,23 @@ contains
         end if
         if (all(codes == [239, 187, 191])) bytes = 3
     end function unseen
+
+    !> A text with another one in place of each of a letter, to quote it.
+    pure function replaced(text, letter, by) result(new)
+        character(len=*), intent(in) :: text, by
+        character(len=1), intent(in) :: letter
+        character(len=:), allocatable :: new
+        integer :: i
+
+        new = ''
+        do i = 1, len(text)
+            if (text(i:i) == letter) then
+                new = new // by
+            else
+                new = new // text(i:i)
+            end if
+        end do
+    end function replaced
 
     pure function lower(text) result(lowered)
         character(len=*), intent(in) :: text

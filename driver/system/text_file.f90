@@ -1,9 +1,9 @@
-!> Files for results, text or numbers, through the C library: gfortran's own output takes a full
+!> Files for results, line by line, through the C library: gfortran's own output takes a full
 !> disk for success.
 module text_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_null_ptr, c_ptr, &
         c_size_t
-    use, intrinsic :: iso_fortran_env, only : int64, real64
+    use, intrinsic :: iso_fortran_env, only : int64
     use c_library, only : c_fclose, c_fflush, c_fopen, c_fwrite
     use platform, only : truncate_file
     implicit none
@@ -17,12 +17,10 @@ module text_file
         private
         type(c_ptr) :: stream = c_null_ptr
         character(len=:), allocatable :: name
-        logical :: of_lines = .false.
         integer(int64), public :: bytes = 0   !! written so far
         logical, public :: failed = .false.   !! a line could not be written, or the file not opened
     contains
-        procedure :: create, go_on, write_line, write_numbers, flush_lines, finish
-        procedure, private :: put
+        procedure :: create, go_on, write_line, flush_lines, finish
     end type output_file
 
 contains
@@ -58,36 +56,13 @@ contains
         class(output_file), intent(inout) :: self
         character(len=*), intent(in) :: line
 
-        self%of_lines = .true.
-        call self%put(line // new_line('a'))
-    end subroutine write_line
-
-    !> Numbers as they are in memory, eight bytes each.
-    subroutine write_numbers(self, numbers)
-        class(output_file), intent(inout) :: self
-        real(real64), intent(in) :: numbers(:)
-        integer, parameter :: part = 512
-        character(len=8 * part) :: bytes
-        integer :: first, last
-
-        do first = 1, size(numbers), part
-            last = min(first + part - 1, size(numbers))
-            bytes(:8 * (last - first + 1)) = transfer(numbers(first:last), &
-                bytes(:8 * (last - first + 1)))
-            call self%put(bytes(:8 * (last - first + 1)))
-        end do
-    end subroutine write_numbers
-
-    subroutine put(self, text)
-        class(output_file), intent(inout) :: self
-        character(len=*), intent(in) :: text
         integer(c_size_t) :: length
 
         if (self%failed .or. .not. c_associated(self%stream)) return
-        length = len(text, c_size_t)
-        self%failed = c_fwrite(text, 1_c_size_t, length, self%stream) /= length
+        length = len(line, c_size_t) + 1
+        self%failed = c_fwrite(line // new_line('a'), 1_c_size_t, length, self%stream) /= length
         self%bytes = self%bytes + length
-    end subroutine put
+    end subroutine write_line
 
     !> Hands all lines to the operating system.
     subroutine flush_lines(self)
@@ -105,7 +80,7 @@ contains
         if (.not. c_associated(self%stream)) return
         if (c_fclose(self%stream) /= 0) self%failed = .true.
         self%stream = c_null_ptr
-        if (self%failed .and. self%of_lines) call cut_to_whole_lines(self%name)
+        if (self%failed) call cut_to_whole_lines(self%name)
     end subroutine finish
 
     subroutine cut_to_whole_lines(name)

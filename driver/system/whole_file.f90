@@ -8,7 +8,7 @@ module whole_file
     implicit none
     private
 
-    public :: plain_text, read_whole_file
+    public :: next_line, plain_text, read_whole_file
 
     character(len=*), parameter :: utf8_mark = char(239) // char(187) // char(191)
     character(len=*), parameter :: little_endian_mark = char(255) // char(254)
@@ -53,7 +53,7 @@ contains
         do
             taken = int(c_fread(chunk, 1_c_size_t, int(len(chunk), c_size_t), stream))
             if (taken == 0) exit
-            if (length + taken > len(bytes)) call double_room(bytes)
+            if (length + taken > len(bytes)) bytes = bytes // bytes   ! room
             bytes(length + 1:length + taken) = chunk(:taken)
             length = length + taken
             if (length > most) exit
@@ -64,14 +64,21 @@ contains
         bytes = bytes(:length)
     end subroutine read_bytes
 
-    pure subroutine double_room(bytes)
-        character(len=:), allocatable, intent(inout) :: bytes
-        character(len=:), allocatable :: larger
+    !> Moves on to the next line of a text. What follows the last line feed is one, too: there
+    !> `last` is the end of the text.
+    pure subroutine next_line(text, first, last, line)
+        character(len=*), intent(in) :: text
+        integer, intent(out) :: first     !! character of the line
+        integer, intent(inout) :: last    !! of the line before, then of this one; -1 at the start
+        integer, intent(inout) :: line    !! number, from 1
+        integer :: length
 
-        allocate (character(len=2 * len(bytes)) :: larger)
-        larger(:len(bytes)) = bytes
-        call move_alloc(larger, bytes)
-    end subroutine double_room
+        first = last + 2
+        length = index(text(first:), line_feed) - 1
+        last = first + length - 1
+        if (length < 0) last = len(text)
+        line = line + 1
+    end subroutine next_line
 
     !> The operating system's reason, which Fortran tells and C keeps in a macro.
     function why_not_opened(name) result(problem)

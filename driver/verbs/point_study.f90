@@ -13,7 +13,7 @@ module point_study
     use progress_bar, only : progress
     use run_pictures, only : draw_point
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, is_readable, tell_failure
+        has_faults, is_for, tell_failure
     implicit none
     private
 
@@ -50,8 +50,7 @@ contains
         character(len=:), allocatable :: problem, base
 
         exit_status = exit_bad_input
-        if (.not. is_readable(wanted%input, file)) return
-        if (.not. is_for('point', file)) return
+        if (.not. is_for('point', wanted%input, file)) return
         call read_point_settings(file, run)
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem

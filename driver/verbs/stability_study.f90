@@ -15,10 +15,10 @@ module stability_study
     use steady_sliding, only : sliding_case, take_piece
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
-    use sweep_table, only : point_text
+    use sweep_table, only : key_names, point_text
     use text_file, only : output_file
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, is_readable
+        has_faults, is_for
     implicit none
     private
 
@@ -45,14 +45,13 @@ contains
         integer :: i
 
         exit_status = exit_bad_input
-        if (.not. is_readable(wanted%input, file)) return
-        if (.not. is_for('stability', file)) return
+        if (.not. is_for('stability', wanted%input, file)) return
         call read_runs(file, plan)
         if (has_faults(file)) return
         if (.not. directory_is_ready(wanted%output)) return
         base = wanted%output // '/' // wanted%stem // '_stability'
         call into%rows%create(base // '.csv')
-        call into%rows%write_line(key_names(plan) // stability_columns)
+        call into%rows%write_line(key_names(plan%axes) // stability_columns)
         call into%eigenvalues%create(wanted%output // '/' // wanted%stem // '_eigenvalues.csv')
         call into%eigenvalues%write_line(eigenvalue_columns)
         do i = 1, size(plan%runs)
@@ -89,18 +88,6 @@ contains
         call read_settings(file, run)
         plan%runs(1) = run
     end subroutine read_runs
-
-    !> The names of the keys of a sweep, as the first columns.
-    pure function key_names(plan) result(names)
-        type(sweep_plan), intent(in) :: plan
-        character(len=:), allocatable :: names
-        integer :: i
-
-        names = ''
-        do i = 1, size(plan%axes)
-            names = names // plan%axes(i)%name // ','
-        end do
-    end function key_names
 
     subroutine tell_run(run, keys, aloud, into)
         type(settings), intent(in) :: run

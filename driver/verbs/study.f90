@@ -18,27 +18,13 @@ module study
     use summary, only : print_event_times, print_summary, print_warnings
     use table_size, only : check_table_size
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, is_readable, tell_failure
+        has_faults, is_for, tell_failure
     implicit none
     private
 
     public :: run_input
 
 contains
-
-    !> Reads and validates; says what is wrong, all of it.
-    subroutine read_input(input, run, exit_status)
-        character(len=*), intent(in) :: input
-        type(settings), intent(out) :: run
-        integer, intent(out) :: exit_status
-        type(namelist_file) :: file
-
-        exit_status = exit_bad_input
-        if (.not. is_readable(input, file)) return
-        if (.not. is_for('run', file)) return
-        call read_settings(file, run)
-        if (.not. has_faults(file)) exit_status = exit_done
-    end subroutine read_input
 
     !> Reads, validates, runs and reports. What has been computed stays on disk, whatever happens.
     subroutine run_input(wanted, exit_status)
@@ -48,13 +34,14 @@ contains
         type(simulation_run), target :: live
         type(csv_recorder), target :: records
         type(outcome) :: result
+        type(namelist_file) :: file
         character(len=:), allocatable :: problem, base
         logical :: written
 
-        call read_input(wanted%input, run, exit_status)
-        if (exit_status /= exit_done) return
-
         exit_status = exit_bad_input
+        if (.not. is_for('run', wanted%input, file)) return
+        call read_settings(file, run)
+        if (has_faults(file)) return
         call check_table_size(run, problem)
         if (len(problem) > 0) then
             write (error_unit, '(3a)') wanted%input, ': ', problem

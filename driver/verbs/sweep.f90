@@ -19,7 +19,7 @@ module sweep
     use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
     use text_file, only : output_file
-    use verb_common, only : exit_bad_input, exit_done, exit_failed, has_faults, is_for, is_readable
+    use verb_common, only : exit_bad_input, exit_done, exit_failed, has_faults, is_for
     implicit none
     private
 
@@ -40,8 +40,7 @@ contains
         integer :: found, failures
 
         exit_status = exit_bad_input
-        if (.not. is_readable(wanted%input, file)) return
-        if (.not. is_for('sweep', file)) return
+        if (.not. is_for('sweep', wanted%input, file)) return
         call read_plan(file, plan)
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem // '_sweep'
@@ -54,9 +53,9 @@ contains
         found = count_rows(pack(rows, mine))
         call run_all(plan, wanted, mine, done, rows, problem)
         if (len(problem) == 0 .and. wanted%parts == 1) call write_table(base, plan, rows, problem)
-        if (done%failed()) problem = 'cannot write ' // journal_name(wanted, base) &
+        if (done%file%failed) problem = 'cannot write ' // journal_name(wanted, base) &
             // ' (disk full?)'
-        call done%finish()
+        call done%file%finish()
         failures = count_rows_with(plan, rows, 'failed,', mine)
         if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(wanted, base, &
             count(mine), found, failures)

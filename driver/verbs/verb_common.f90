@@ -25,15 +25,16 @@ contains
         if (.not. readable) write (error_unit, '(4a)') 'stickslip: ', name, ': ', problem
     end function is_readable
 
-    !> Is this an input of the verb? One of another verb is told which one, and nothing else.
-    function is_for(verb, file) result(right)
-        character(len=*), intent(in) :: verb
-        type(namelist_file), intent(inout) :: file
+    !> Reads an input of a verb. One of another verb is told which one, and nothing else.
+    function is_for(verb, name, file) result(right)
+        character(len=*), intent(in) :: verb, name
+        type(namelist_file), intent(out) :: file
         logical :: right
         logical :: refused
 
+        right = is_readable(name, file)
+        if (.not. right) return
         call refuse_other_verb(verb, file, refused)
-        right = .not. refused
         if (refused) right = .not. has_faults(file)
     end function is_for
 
