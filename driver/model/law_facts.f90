@@ -7,8 +7,7 @@ module law_facts
     implicit none
     private
 
-    public :: cohesion, cohesion_of_each, contact_damping, has_r, internal_variable, &
-        typical_strength, virgin_mu
+    public :: cohesion_of_each, has_r, internal_variable, typical_strength
 
 contains
 
@@ -44,28 +43,8 @@ contains
         strength = law%typical_coefficient * pressure + law%cohesion
     end function typical_strength
 
-    !> Of the damper beside the tangential contact spring.
-    pure function contact_damping(props) result(damping)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: damping                !! 0: there is none [F T/L^3]
-        type(facts) :: law
-
-        law = friction_facts(props)
-        damping = law%damping
-    end function contact_damping
-
-    !> Traction that the contact carries without pressure.
-    pure function cohesion(props) result(traction)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: traction               !! [F/L^2]
-        type(facts) :: law
-
-        law = friction_facts(props)
-        traction = law%cohesion
-    end function cohesion
-
-    !> The same of many points. Its place is asked for once: asking for all facts of each point
-    !> takes longer than a step.
+    !> Tractions that contacts carry without pressure. The place of that constant is asked for once:
+    !> asking for all facts of each point takes longer than a step.
     pure function cohesion_of_each(constants) result(tractions)
         real(dp), intent(in) :: constants(:, :)   !! of one law, one row a point; options that are
                                                   !! left out at the end are not there
@@ -76,15 +55,5 @@ contains
         place = friction_place(friction_law_of(constants(1, :)), 'cohesion')
         if (place >= 1 .and. place <= size(constants, 2)) tractions = constants(:, place)
     end function cohesion_of_each
-
-    !> Friction coefficient of a virgin contact.
-    pure function virgin_mu(props) result(mu)
-        real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        real(dp) :: mu                     !! [-]
-        type(facts) :: law
-
-        law = friction_facts(props)
-        mu = law%virgin_mu
-    end function virgin_mu
 
 end module law_facts

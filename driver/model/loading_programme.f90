@@ -2,6 +2,7 @@
 !> and the traction are linear, with an oscillation on the traction.
 module loading_programme
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use grid_map, only : nodes_up_to
     implicit none
     private
 
@@ -32,18 +33,8 @@ contains
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
         integer :: i
-        integer :: above_it, middle
 
-        i = 1
-        above_it = size(self%start) + 1
-        do while (above_it - i > 1)
-            middle = (i + above_it) / 2
-            if (self%start(middle) <= t) then
-                i = middle
-            else
-                above_it = middle
-            end if
-        end do
+        i = max(1, nodes_up_to(self%start, t))
     end function piece
 
     !> How far the drive has moved by time `t`.

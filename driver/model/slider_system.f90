@@ -10,9 +10,10 @@ module slider_system
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_ok, friction_update, friction_update_batch, prop_alpha_n, &
-        prop_alpha_t, statev_dissipation, statev_mu, statev_r, statev_size, statev_u_et, statev_u_n
-    use law_facts, only : cohesion, cohesion_of_each, virgin_mu
+    use friction_mod, only : facts => law_facts, friction_facts, friction_ok, friction_update, &
+        friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
+        statev_r, statev_size, statev_u_et, statev_u_n
+    use law_facts, only : cohesion_of_each
     implicit none
     private
 
@@ -133,27 +134,27 @@ contains
         type(slider), intent(in) :: system
         type(initial_values), intent(in) :: values
         type(slider_state), intent(inout) :: state   !! as `initial_state` left it
-        real(dp), dimension(size(state%x)) :: mu, held, alpha_t
+        real(dp), dimension(size(state%x)) :: mu, alpha_t
+        real(dp), allocatable :: props(:)
+        type(facts) :: law
         integer :: i
 
         if (.not. values%any_given) return
         state%x = values%displacement
         state%v = values%velocity
         mu = values%mu
-        held = cohesions(system, size(mu))
-        alpha_t = system%props(prop_alpha_t)
-        if (allocated(system%constants)) then
-            alpha_t = system%constants(:, prop_alpha_t)
-            do i = 1, size(mu)
-                if (values%has_r .and. .not. values%mu_given) mu(i) = virgin_mu( &
-                    system%constants(i, :))
-            end do
-        end if
+        do i = 1, size(mu)
+            props = system%props_of(i)
+            alpha_t(i) = props(prop_alpha_t)
+            law = friction_facts(props)
+            if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
+        end do
         state%statev(:, statev_mu) = mu
         if (values%has_r) state%statev(:, statev_r) = values%r
         state%friction = mu * state%normal
         if (allocated(system%load)) state%friction = state%friction * system%load
-        if (values%has_r) state%friction = values%r * (state%friction + held)
+        if (values%has_r) state%friction = values%r * (state%friction + cohesions(system, &
+            size(mu)))
         state%friction = system%area * state%friction
         state%statev(:, statev_u_et) = state%friction / (system%area * alpha_t)
         state%spring = sum(state%friction) / size(state%friction) &
@@ -192,11 +193,13 @@ contains
         type(slider), intent(in) :: system
         integer, intent(in) :: n   !! blocks
         real(dp) :: held(n)        !! [F/L^2]
+        type(facts) :: law
 
         if (allocated(system%constants)) then
             held = cohesion_of_each(system%constants)
         else
-            held = cohesion(system%props)
+            law = friction_facts(system%props)
+            held = law%cohesion
         end if
     end function cohesions
 

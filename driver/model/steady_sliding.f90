@@ -130,70 +130,60 @@ contains
     end function knows
 
     !> The value of a key that is known.
-    pure function value_of(self, key) result(value)
-        class(sliding_case), intent(in) :: self
+    function value_of(self, key) result(value)
+        class(sliding_case), target, intent(in) :: self
         character(len=*), intent(in) :: key   !! group%key
         real(dp) :: value
+        real(dp), pointer :: number
 
-        select case (key)
-        case ('slider%mass')
-            value = self%mass
-        case ('slider%stiffness')
-            value = self%stiffness
-        case ('slider%damping')
-            value = self%damping
-        case ('slider%area')
-            value = self%area
-        case ('slider%normal_traction', 'drive%normal')
-            value = self%normal
-        case ('drive%velocity')
-            value = self%velocity
-        case ('slider%normal_mass')
-            value = self%across%mass
-        case ('slider%normal_stiffness')
-            value = self%across%stiffness
-        case ('slider%normal_damping')
-            value = self%across%damping
-        case ('slider%tilt_stiffness')
-            value = self%across%tilt
-        case default
-            value = self%props(place_of(self, key))
-        end select
+        call find_number(self, key, number)
+        value = number
     end function value_of
 
     !> Gives a key that is known another value; a velocity keeps its sense.
     subroutine set(self, key, value)
-        class(sliding_case), intent(inout) :: self
+        class(sliding_case), target, intent(inout) :: self
         character(len=*), intent(in) :: key   !! group%key
         real(dp), intent(in) :: value
+        real(dp), pointer :: number
+
+        call find_number(self, key, number)
+        number = merge(sign(value, number), value, key == 'drive%velocity')
+        if (key == 'slider%normal_traction' .or. key == 'drive%normal') self%normal_at_start = value
+        if (place_of(self, key) > 0) call self%take_constants()
+    end subroutine set
+
+    !> Where the value of a key that is known is kept.
+    subroutine find_number(this, key, number)
+        type(sliding_case), target, intent(in) :: this
+        character(len=*), intent(in) :: key   !! group%key
+        real(dp), pointer, intent(out) :: number
 
         select case (key)
         case ('slider%mass')
-            self%mass = value
+            number => this%mass
         case ('slider%stiffness')
-            self%stiffness = value
+            number => this%stiffness
         case ('slider%damping')
-            self%damping = value
+            number => this%damping
         case ('slider%area')
-            self%area = value
+            number => this%area
         case ('slider%normal_traction', 'drive%normal')
-            self%normal = value
-            self%normal_at_start = value
+            number => this%normal
         case ('drive%velocity')
-            self%velocity = sign(value, self%velocity)
+            number => this%velocity
         case ('slider%normal_mass')
-            self%across%mass = value
+            number => this%across%mass
         case ('slider%normal_stiffness')
-            self%across%stiffness = value
+            number => this%across%stiffness
         case ('slider%normal_damping')
-            self%across%damping = value
+            number => this%across%damping
         case ('slider%tilt_stiffness')
-            self%across%tilt = value
+            number => this%across%tilt
         case default
-            self%props(place_of(self, key)) = value
-            call self%take_constants()
+            number => this%props(place_of(this, key))
         end select
-    end subroutine set
+    end subroutine find_number
 
     !> After a change of the law's constants.
     subroutine take_constants(self)

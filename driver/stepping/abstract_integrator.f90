@@ -35,6 +35,9 @@ module abstract_integrator
         type(programme) :: drive
         real(dp) :: origin = 0.0_dp    !! of the drive: its position at time 0 [L]
         real(dp) :: t_end = 0.0_dp     !! [T]
+        real(dp) :: dt = 0.0_dp        !! the step, or the next to try [T]
+        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! of adaptive steps [T]
+        real(dp) :: every = 0.0_dp     !! these end at multiples of this time, unless it is 0 [T]
         integer :: rejected = 0        !! steps that were tried in vain
         integer :: iterations = 0, most_iterations = 0   !! the latter in a step
         logical :: in_rates = .false.  !! these are evaluations of rates, not Newton's iterations
@@ -99,6 +102,10 @@ contains
         self%drive = run%drive
         self%origin = start%drive
         self%t_end = run%t_end
+        self%dt = run%dt
+        self%dt_min = run%dt_min
+        self%dt_max = run%dt_max
+        self%every = run%every
     end subroutine take_run
 
     pure function finished(self, state) result(yes)

@@ -30,9 +30,6 @@ module adaptive_steps
     type, extends(integrator) :: adaptive
         class(newmark), allocatable :: method
         type(law_facts), allocatable :: laws(:)   !! of each block; one, if all are alike
-        real(dp) :: dt = 0.0_dp        !! next to try [T]
-        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
-        real(dp) :: every = 0.0_dp     !! steps end at multiples of this time, unless it is 0 [T]
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
         real(dp) :: pressing = 0.0_dp      !! largest normal force [F]
         integer :: order = 1               !! of the method, with the friction law in it
@@ -60,10 +57,6 @@ contains
 
         call self%take_run(run, system, start)
         call choose_method(run, self%method)
-        self%dt = run%dt
-        self%dt_min = run%dt_min
-        self%dt_max = run%dt_max
-        self%every = run%every
         self%order = run%order
         self%pressing = run%area * run%drive%largest_normal()
         law = friction_facts(run%props)

@@ -18,7 +18,7 @@ module chain_rates
         real(dp) :: origin = 0.0_dp   !! of the drive: its position at time 0 [L]
         integer :: piece = 0          !! of the programme, in which the rates are taken
     contains
-        procedure :: enter, own_rates, rates, by_own_extension, by_walls
+        procedure :: enter, rates, by_own_extension, by_walls
     end type chain_equations
 
 contains
@@ -40,18 +40,6 @@ contains
         end do
     end subroutine enter
 
-    !> Rates of a block, but for what its neighbours do.
-    pure subroutine own_rates(self, i, t, y, dy, failed)
-        class(chain_equations), intent(in) :: self
-        integer, intent(in) :: i                !! block
-        real(dp), intent(in) :: t               !! [T]
-        real(dp), intent(in) :: y(controlled)
-        real(dp), intent(out) :: dy(unknowns)
-        logical, intent(out) :: failed
-
-        call self%blocks(min(i, size(self%blocks)))%rates(t, y, dy, failed)
-    end subroutine own_rates
-
     !> Rates of the unknowns.
     subroutine rates(self, t, y, dy, failed)
         class(chain_equations), intent(in) :: self
@@ -63,7 +51,8 @@ contains
         integer :: i
 
         do i = 1, size(y, 2)
-            call self%own_rates(i, t, y(:controlled, i), dy(:, i), failed)
+            call self%blocks(min(i, size(self%blocks)))%rates(t, y(:controlled, i), dy(:, i), &
+                failed)
             if (failed) return
         end do
         x = self%origin + self%drive%position(t) - y(extension, :)

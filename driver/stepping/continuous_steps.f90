@@ -8,11 +8,12 @@ module continuous_steps
     use abstract_integrator, only : integrator, step_report, unstable_without_inertia
     use archive_file, only : archive
     use dormand_prince, only : dormand_prince_step
-    use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        friction_update, law_state, load_rates, onset_drops, onset_gradual, onset_yields, &
-        prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
-        statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
-    use law_facts, only : cohesion, contact_damping, typical_strength
+    use friction_mod, only : facts => law_facts, friction_facts, friction_message, &
+        friction_no_convergence, friction_no_rate, friction_update, law_state, load_rates, &
+        onset_drops, onset_gradual, onset_yields, prop_alpha_n, prop_alpha_t, read_surface, &
+        statev_dissipation, statev_mu, statev_r, statev_size, statev_slip, statev_status, &
+        statev_u_et, statev_u_n
+    use law_facts, only : typical_strength
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
@@ -34,9 +35,6 @@ module continuous_steps
         real(dp) :: y(unknowns) = 0.0_dp        !! where the block is
         real(dp) :: first(unknowns) = 0.0_dp    !! rates there
         logical :: known = .false.              !! they are up to date
-        real(dp) :: dt = 0.0_dp                 !! next to try [T]
-        real(dp) :: dt_min = 0.0_dp, dt_max = 0.0_dp   !! [T]
-        real(dp) :: every = 0.0_dp   !! steps end at multiples of this time, unless it is 0 [T]
         real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
         real(dp) :: rtol = 0.0_dp
         real(dp) :: natural(controlled) = 0.0_dp    !! sizes of the unknowns
@@ -72,12 +70,8 @@ contains
 
         call self%take_run(run, system, start)
         self%in_rates = .true.
-        self%dt = run%dt
-        self%dt_min = run%dt_min
-        self%dt_max = run%dt_max
         if (run%drive%amplitude > 0.0_dp) self%dt_max = min(run%dt_max, 1.0_dp &
             / (16.0_dp * run%drive%frequency))
-        self%every = run%every
         self%rtol = run%rtol
         largest = run%drive%largest_normal()
         associate (eq => self%equations)
@@ -85,7 +79,8 @@ contains
             eq%drive = run%drive
             self%implicit = eq%surface%traits%stiff
             self%open_below = largest * vanishing(self)
-            if (cohesion(run%props) > 0.0_dp) then   ! closed without pressure
+            if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
+                ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, self%open_below)
                 self%open_below = -tiny(largest)
             end if
@@ -110,6 +105,7 @@ contains
         !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
         !> what the law remembers, how many steps are taken by the contact spring.
         real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        type(facts) :: law
         real(dp) :: force, stiffness
         integer :: status
 
@@ -120,7 +116,8 @@ contains
             eq%damping = run%damping
             eq%area = run%area
             eq%alpha = props(prop_alpha_t)
-            eq%damper = contact_damping(props)
+            law = friction_facts(props)
+            eq%damper = law%damping
             eq%rigid = run%rigid_contact
             eq%least_pressure = 1.0e-10_dp * largest
             eq%forward = run%loading_sense()
@@ -385,7 +382,7 @@ contains
                     ! R leaves 0, where the law knows no slip, at once, and so steeply that Rodas4's
                     ! differences for derivatives tell nothing
                     self%y(elastic) = eq%sense_of(self%y(velocity)) * first_ratio &
-                        * (self%y(memory) * pressure + eq%surface%law%cohesion) / eq%alpha
+                        * eq%full_strength(self%y, pressure) / eq%alpha
                     self%implicit = .false.
                     self%stiff = 0
                 end if
@@ -799,10 +796,10 @@ contains
                 eq%sense = eq%sense_of(self%y(elastic))
                 self%y(elastic) = eq%sense * eq%surface%tau_max / eq%alpha
                 if (eq%surface%traits%memory == 1) self%y(ratio) = min(1.0_dp, eq%surface%tau_max &
-                    / (self%y(memory) * pressure + eq%surface%law%cohesion))
+                    / eq%full_strength(self%y, pressure))
             else
-                if (eq%surface%traits%memory == 1) strength = self%y(ratio) * (self%y(memory) &
-                    * pressure + eq%surface%law%cohesion)
+                if (eq%surface%traits%memory == 1) strength = self%y(ratio) &
+                    * eq%full_strength(self%y, pressure)
                 if (eq%surface%traits%memory == 1 .or. eq%surface%traits%onset &
                     == onset_yields) then
                     self%y(elastic) = sign(min(strength, eq%surface%tau_max) / eq%alpha, eq%sense)

@@ -14,7 +14,6 @@ module fixed_steps
 
     type, extends(integrator) :: fixed
         class(newmark), allocatable :: method
-        real(dp) :: dt = 0.0_dp        !! the step [T]
         integer :: passed = 0          !! whole steps behind us
         integer :: parts = 1           !! pieces that the step is being taken in
     contains
@@ -33,7 +32,6 @@ contains
 
         call self%take_run(run, system, start)
         call choose_method(run, self%method)
-        self%dt = run%dt
     end subroutine prepare
 
     !> With a mass the step is the fixed one; without, or where a block moves across the interface,

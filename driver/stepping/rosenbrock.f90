@@ -220,9 +220,9 @@ contains
 
         n = size(y, 2)
         do i = 1, n
-            call chain%own_rates(i, t, y(:controlled, i), own, failed)
-            if (failed) return
             associate (block => chain%blocks(min(i, size(chain%blocks))))
+                call block%rates(t, y(:controlled, i), own, failed)
+                if (failed) return
                 call differentiate(block, t, h, y(:, i), own, self%natural(:, i), &
                     self%j(:, :, i), self%by_time(:, i), failed)
             end associate

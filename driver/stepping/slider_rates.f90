@@ -50,8 +50,8 @@ module slider_rates
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
-        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, traction, &
-            inputs, follows_traction, sense_of, follows_share, runs_away
+        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, &
+            full_strength, traction, inputs, follows_traction, sense_of, follows_share, runs_away
     end type slider_equations
 
     !> Of a contact with a damper, or on a block with one and without mass: `push - drag v` is its
@@ -674,8 +674,7 @@ contains
                 if (.not. gradual) then
                     g(2) = just_below * cap - strength(self, y, pressure)
                 else if (self%surface%traits%memory == 1) then
-                    g(2) = just_below * cap - y(ratio) * (y(memory) * pressure &
-                        + self%surface%law%cohesion)
+                    g(2) = just_below * cap - y(ratio) * full_strength(self, y, pressure)
                 else if (self%rigid) then
                     call self%surface%resistance_at(law_state_of(self, y, pressure), &
                         max(0.0_dp, dy(slip)), pressure, own, by_rate)

@@ -48,7 +48,7 @@ module time_integrator
         type(workspace), private :: work
         type(balance), private :: now
     contains
-        procedure :: step, set_as
+        procedure :: step, set_as, motion
     end type newmark
 
 contains
@@ -358,7 +358,17 @@ contains
         self%now%norm = norm
     end subroutine evaluate
 
-    !> Newmark's formulas, and the drive springs.
+    !> Newmark's formulas.
+    pure subroutine motion(self, dt, moved, old_v, old_a, v, a)
+        class(newmark), intent(in) :: self
+        real(dp), intent(in) :: dt, moved, old_v, old_a
+        real(dp), intent(out) :: v, a
+
+        a = (moved - dt * old_v) / (self%beta * dt**2) - (0.5_dp / self%beta - 1.0_dp) * old_a
+        v = old_v + dt * ((1.0_dp - self%gamma) * old_a + self%gamma * a)
+    end subroutine motion
+
+    !> Where the blocks are after a step, and how they move.
     subroutine move_to(self, system, old, dx, new)
         class(newmark), intent(in) :: self
         type(slider), intent(in) :: system
@@ -371,10 +381,7 @@ contains
             do i = 1, size(dx)
                 new%x(i) = old%x(i) + dx(i)
                 if (self%now%inertial) then
-                    new%a(i) = (dx(i) - dt * old%v(i)) / (self%beta * dt**2) &
-                        - (0.5_dp / self%beta - 1.0_dp) * old%a(i)
-                    new%v(i) = old%v(i) + dt * ((1.0_dp - self%gamma) * old%a(i) &
-                        + self%gamma * new%a(i))
+                    call motion(self, dt, dx(i), old%v(i), old%a(i), new%v(i), new%a(i))
                 else
                     new%v(i) = (dx(i) / dt - (1.0_dp - self%gamma) * old%v(i)) / self%gamma
                 end if

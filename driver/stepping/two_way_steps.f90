@@ -116,8 +116,8 @@ contains
         if (this%status < 0) return
         new%statev(1, :) = statev
         new%x = old%x + this%moved(along)
-        call motion(self, dt, this%moved(along), old%v(1), old%a(1), new%v(1), new%a(1))
-        call motion(self, dt, this%moved(across), old%v_n, old%a_n, new%v_n, new%a_n)
+        call self%motion(dt, this%moved(along), old%v(1), old%a(1), new%v(1), new%a(1))
+        call self%motion(dt, this%moved(across), old%v_n, old%a_n, new%v_n, new%a_n)
         new%spring = system%pull(new%drive, new%x, statev(statev_u_n))
         new%friction = system%area * traction(2)
         new%normal = system%carried_pressure(statev(statev_u_n))
@@ -161,15 +161,5 @@ contains
             system%push(state%drive, state%load, state%x(1), state%statev(1, statev_u_n), &
             state%v_n) + system%area * state%normal]
     end function forces_on
-
-    !> Newmark's formulas.
-    pure subroutine motion(self, dt, moved, old_v, old_a, v, a)
-        class(two_way_newmark), intent(in) :: self
-        real(dp), intent(in) :: dt, moved, old_v, old_a
-        real(dp), intent(out) :: v, a
-
-        a = (moved - dt * old_v) / (self%beta * dt**2) - (0.5_dp / self%beta - 1.0_dp) * old_a
-        v = old_v + dt * ((1.0_dp - self%gamma) * old_a + self%gamma * a)
-    end subroutine motion
 
 end module two_way_steps
