@@ -14,7 +14,8 @@ module fault_reader
     use law_input, only : read_friction
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use namelist_parser, only : namelist_entry
-    use profile_reader, only : joined, number_text, profile, put_number, read_map, take_profiles
+    use number_text, only : full_row
+    use profile_reader, only : joined, profile, put_number, read_map, take_profiles
     use unit_reader, only : read_units
     implicit none
     private
@@ -135,8 +136,8 @@ contains
             spring%group = 'friction'
             spring%key = keys(i)
             allocate (spring%values(1))
-            spring%values(1)%text = number_text(stiffer * max(plan%shear_modulus, tiny(1.0_dp)) &
-                / plan%dz())
+            spring%values(1)%text = full_row([stiffer * max(plan%shear_modulus, tiny(1.0_dp)) &
+                / plan%dz()])
             file%entries = [file%entries, spring]
             deallocate (spring%values)
         end do

@@ -9,11 +9,12 @@ module profile_reader
     use grid_map, only : map_on_grid, nodes_up_to
     use namelist_input, only : namelist_file
     use namelist_parser, only : value_token
+    use number_text, only : full_row
     use printable_text, only : lower
     implicit none
     private
 
-    public :: joined, names_netcdf, names_profile, number_text, profile, put_number, read_map, &
+    public :: joined, names_netcdf, names_profile, profile, put_number, read_map, &
         take_profiles
 
     !> A quantity that a file gives at nodes.
@@ -114,19 +115,10 @@ contains
 
         do i = 1, size(file%entries)
             if (file%entries(i)%group /= group .or. file%entries(i)%key /= key) cycle
-            file%entries(i)%values(1)%text = number_text(number)
+            file%entries(i)%values(1)%text = full_row([number])
             file%entries(i)%values(1)%quoted = .false.
         end do
     end subroutine put_number
-
-    pure function number_text(number) result(text)
-        real(dp), intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=32) :: buffer
-
-        write (buffer, '(es24.16e3)') number
-        text = trim(adjustl(buffer))
-    end function number_text
 
     !> Two lists as one that increases, each number once.
     pure function joined(a, b) result(both)

@@ -34,7 +34,7 @@ module steady_answers
         type(stability) :: result
         type(critical_list) :: critical(criticals)
     contains
-        procedure :: numbers, pressure
+        procedure :: numbers
     end type steady_answer
 
 contains
@@ -110,10 +110,12 @@ contains
         integer :: i
 
         row = ieee_value(row, ieee_quiet_nan)
-        row(:3) = [real(self%piece, dp), self%this%velocity, self%pressure()]
+        row(:3) = [real(self%piece, dp), self%this%velocity, self%this%normal]
+        associate (contact => self%result%contact)   ! it has a pressure if there is steady sliding
+            if (contact%pressure > 0.0_dp) row(3:4) = [contact%pressure, &
+                contact%traction / contact%pressure]
+        end associate
         row(5) = self%result%verdict
-        if (self%result%contact%pressure > 0.0_dp) row(4) = self%result%contact%traction &
-            / self%result%contact%pressure
         if (self%result%verdict /= undecided) row(6:7) = [self%result%growth, &
             self%result%frequency]
         do i = 1, criticals
@@ -121,14 +123,5 @@ contains
                 trim(critical_keys(i)))))
         end do
     end function numbers
-
-    !> That the contact carries in steady sliding; what is applied, where there is none.
-    pure function pressure(self)
-        class(steady_answer), intent(in) :: self
-        real(dp) :: pressure   !! [F/L^2]
-
-        pressure = self%this%normal
-        if (self%result%contact%pressure > 0.0_dp) pressure = self%result%contact%pressure
-    end function pressure
 
 end module steady_answers

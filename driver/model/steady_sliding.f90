@@ -327,11 +327,7 @@ contains
             case default
                 return
             end select
-            rate%surface => law%surface
-            rate%state = law%state
-            rate%rate = law%rate
-            rate%pressure = law%pressure
-            rate%variable = law%variable
+            rate%law_about = law
             y = rate%at(bounds(2))
             if (law%variable == on_memory .and. y(1) >= 0.0_dp) then
                 ! it has grown to where it no longer counts

@@ -162,7 +162,7 @@ contains
         call file%visit(self%rows, self%clock%steps, self%fields_due)
         call self%picture%visit(file)
         call file%visit(series, events, fields)
-        if (file%is_read()) call self%go_on(series, events, fields)
+        if (.not. file%writing) call self%go_on(series, events, fields)
     end subroutine visit
 
     !> The file of which a picture is drawn: the series itself, unless it is long.

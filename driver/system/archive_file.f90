@@ -11,15 +11,14 @@ module archive_file
 
     !> In the file everything is a word of 64 bits; the last one is a checksum of those before.
     type :: archive
-        private
-        logical :: writing = .false.
-        logical :: failed = .false.
-        integer :: unit = -1
-        integer(int64) :: checksum = 0
-        integer(int64) :: words = 0   !! written
-        character(len=:), allocatable :: name
+        logical :: writing = .false.          !! or else it is read
+        logical, private :: failed = .false.
+        integer, private :: unit = -1
+        integer(int64), private :: checksum = 0
+        integer(int64), private :: words = 0   !! written
+        character(len=:), allocatable, private :: name
     contains
-        procedure :: create, open, close, is_read
+        procedure :: create, open, close
         procedure, private :: visit_fields, visit_reals, visit_table, visit_words
         generic :: visit => visit_fields, visit_reals, visit_table
         procedure :: visit_list
@@ -114,14 +113,6 @@ contains
         done = bytes == word * (self%words + 1)
         if (done) done = rename_file(self%name // '.new', self%name)
     end subroutine close
-
-    !> Is the file being read? Otherwise it is written.
-    pure function is_read(self) result(yes)
-        class(archive), intent(in) :: self
-        logical :: yes
-
-        yes = .not. self%writing
-    end function is_read
 
     subroutine visit_words(self, chunk)
         class(archive), intent(inout) :: self

@@ -2,12 +2,11 @@
 !> pipe. Processes and not threads: gfortran keeps lengths of character results in static memory, so
 !> that text made by two threads at once gets mixed up; and a child that crashes harms no other.
 module child_process
-    use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_long, c_null_char, c_null_ptr, &
-        c_ptr, c_size_t
+    use, intrinsic :: iso_c_binding, only : c_int, c_long, c_null_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, output_unit, real64
-    use c_library, only : c_close, c_end, c_execv, c_fork, c_kill, c_pipe, c_poll, c_read, &
-        c_wait, c_waitpid, c_write
-    use platform, only : interrupted, seconds
+    use c_library, only : c_close, c_end, c_fork, c_kill, c_pipe, c_poll, c_read, c_wait, &
+        c_waitpid, c_write
+    use platform, only : interrupted, replace_program, seconds
     implicit none
     private
 
@@ -104,16 +103,22 @@ contains
         logical, intent(out) :: succeeded
         logical, intent(out) :: in_time      !! it ended by itself
         integer(c_int), parameter :: no_wait = 1, sigkill = 9, pause = 20   ! [ms]
+        character(len=max(2, len(command))) :: arguments(2)
         integer(c_int) :: id, status, ignored
         real(real64) :: begun
 
+        arguments(1) = '-c'
+        arguments(2) = command
         flush (output_unit)
         flush (error_unit)
         begun = seconds()
         succeeded = .false.
         in_time = .true.
         id = c_fork()
-        if (id == 0) call become_shell(command)
+        if (id == 0) then
+            call replace_program('/bin/sh', arguments)
+            call c_end(127_c_int)   ! there is no shell
+        end if
         if (id < 0) return
         do while (c_waitpid(id, status, no_wait) == 0)
             in_time = seconds() - begun < limit .and. .not. interrupted()
@@ -126,20 +131,5 @@ contains
         end do
         succeeded = status == 0
     end subroutine run_command
-
-    !> The process becomes a shell that runs the command; no way leads back.
-    subroutine become_shell(command)
-        character(len=*), intent(in) :: command
-        character(kind=c_char, len=:), allocatable, target :: name, option, text
-        type(c_ptr) :: arguments(4)
-        integer(c_int) :: ignored
-
-        name = 'sh' // c_null_char
-        option = '-c' // c_null_char
-        text = command // c_null_char
-        arguments = [c_loc(name), c_loc(option), c_loc(text), c_null_ptr]
-        ignored = c_execv('/bin/sh' // c_null_char, arguments)
-        call c_end(127_c_int)
-    end subroutine become_shell
 
 end module child_process
