@@ -241,6 +241,7 @@ class CalculiX(unittest.TestCase):
             set xlabel 'time [s]'
             set ylabel 'spring force [N]'
             set grid
+            set key top left
             plot 'calculix_slider.dat' using 1:($1-$3) with lines linewidth 4 linecolor 'gray70' title 'stickslip', \
                  '' using 1:($1-$2) with lines linewidth 1 linecolor 'black' title 'CalculiX'"""
         subprocess.run(['gnuplot'], input=commands, text=True, check=True)

@@ -8,18 +8,19 @@ if (panels > 1 && !exists("STATS_max")) { panels = 1 }   # no contour yet
 set terminal pngcairo size 1200,400*panels font "Sans,12"
 if (ending eq "svg") { set terminal svg size 1200,400*panels font "Sans,12" background "white" }
 set output stem.".".ending
-set multiplot layout panels,1 title stem noenhanced
+set multiplot layout panels,1 title stem."\n" noenhanced   # a line more, clear of the key
 set lmargin at screen 0.08
 set rmargin at screen (panels > 1 ? 0.86 : 0.96)
-set key top left opaque
+set key outside top right horizontal
 set xlabel "time [".time_unit."]"
 set ylabel "largest slip rate [".length_unit."/".time_unit."]"
 set logscale y
 set yrange [seismic_rate*1e-12 < * : *]   # a fault at rest has no logarithm
 set autoscale xfix
 set format y "10^{%T}"
-plot file using 1:(10**$2) skip 1 with lines linewidth 1.5 linecolor "#0072b2" notitle, \
-    seismic_rate with lines linecolor "gray60" title "events"
+plot file using 1:(10**$2) skip 1 with lines linewidth 1.5 linecolor "#0072b2" \
+         title "largest slip rate", \
+     seismic_rate with lines dashtype 2 linecolor "gray50" title "events are faster"
 unset logscale y
 set yrange [*:*]
 set format y "%g"
@@ -27,17 +28,16 @@ set format x "%g"
 if (panels > 1) {
     set yrange [0:*] reverse
     set ylabel "depth [".length_unit."]"
-    set xlabel "contours: one each ".gprintf("%g", between)." ".time_unit.", in events each " \
-        .gprintf("%g", during)." ".time_unit
+    set xlabel "number of the contour, one every ".gprintf("%g", between)." ".time_unit \
+        .", during events every ".gprintf("%g", during)." ".time_unit
     set cblabel "slip rate [".length_unit."/".time_unit."]"
     set format cb "10^{%g}"
     set palette defined (-12 "#ffffff", -9 "#a6bddb", -6 "#0072b2", -3 "#f0c040", 1 "#a02020")
-    set cbrange [-12:1]
+    set cbrange [log10(seismic_rate) - 9:log10(seismic_rate) + 4]
     set view map
-    unset key
     plot contours using (column(-1)):3:5 skip 1 with points pointtype 5 \
-        pointsize (150.0 / STATS_max > 0.4 ? 150.0 / STATS_max : 0.4) linecolor palette
-    set key top right opaque
+        pointsize (150.0 / STATS_max > 0.4 ? 150.0 / STATS_max : 0.4) linecolor palette \
+        notitle
     set xlabel "slip [".length_unit."]"
     plot contours using ($2 > 0 ? NaN : $4):3 skip 1 with lines linecolor "#0072b2" title "between events", \
         contours using ($2 > 0 ? $4 : NaN):3 skip 1 with lines linecolor "#d55e00" title "during events"

@@ -6,25 +6,35 @@ is(name) = stringcolumn("stability") eq name
 set logscale xy
 set xrange [lowest_1 / half_1:highest_1 * half_1]
 set yrange [lowest_2 / half_2:highest_2 * half_2]
-# over few decades with labels at 2 and 5 in between
+# over few decades with labels at 2 and 5 in between, over less than one at all digits
+digits(ratio) = ratio < 10 ? "2 3 4 5 6 7 8 9" : "2 5"
 set format xy "10^{%T}"
 if (highest_1 < 1e3 * lowest_1) {
     set format x "%g"
-    set for [k = floor(log10(lowest_1)):ceil(log10(highest_1))] xtics add \
-        (sprintf("%g", 2 * 10.0**k) 2 * 10.0**k, sprintf("%g", 5 * 10.0**k) 5 * 10.0**k)
+    set for [k = floor(log10(lowest_1)):ceil(log10(highest_1))] for [m in digits(highest_1 / lowest_1)] \
+        xtics add (sprintf("%g", m * 10.0**k) m * 10.0**k)
 }
 if (highest_2 < 1e3 * lowest_2) {
     set format y "%g"
-    set for [k = floor(log10(lowest_2)):ceil(log10(highest_2))] ytics add \
-        (sprintf("%g", 2 * 10.0**k) 2 * 10.0**k, sprintf("%g", 5 * 10.0**k) 5 * 10.0**k)
+    set for [k = floor(log10(lowest_2)):ceil(log10(highest_2))] for [m in digits(highest_2 / lowest_2)] \
+        ytics add (sprintf("%g", m * 10.0**k) m * 10.0**k)
 }
 set xlabel key_1 noenhanced
 set ylabel key_2 noenhanced
 set key outside below
+set bmargin 9
 set tics out nomirror
 set palette defined (0 "#fde0a0", 1 "#d55e00", 2 "#5a1a00")
 set cblabel "frequency of the growing disturbance [1/".time_unit."]"
-if (swings) { set logscale cb } else { unset colorbox }
+if (swings) {
+    set logscale cb
+    stats file using (is("unstable") && column("frequency") > 0 ? column("frequency") : NaN) nooutput
+    if (STATS_max < 1e2 * STATS_min) {
+        set for [k = floor(log10(STATS_min)):ceil(log10(STATS_max))] \
+            for [m in digits(STATS_max / STATS_min)] \
+            cbtics add (sprintf("%g", m * 10.0**k) m * 10.0**k)
+    }
+} else { unset colorbox }
 if (!exists("ending")) { ending = "png" }
 set terminal pngcairo size 900,760 font "Sans,12"
 if (ending eq "svg") { set terminal svg size 900,760 font "Sans,12" background "white" }
