@@ -306,7 +306,8 @@ class NoSteadySliding(Stability):
                           (namelist({('drive', 'normal_amplitude'): '1', ('drive', 'normal_frequency'): '1'}), 'normal traction changes'),
                           ((INPUTS / 'from_file.nml').read_text().replace("'from_file.csv'", f"'{INPUTS / 'from_file.csv'}'"), 'follows a file'),
                           (namelist({('chain', 'n_blocks'): '3', ('chain', 'coupling'): '1'}), 'a chain of blocks'),
-                          (OtherLaws.law(self, 'coulomb', {'mu': 0.3}, "'rigid'", mass=0.0, damping=0.0), 'it needs a mass')):
+                          (OtherLaws.law(self, 'coulomb', {'mu': 0.3, 'eta_t': 1.0}, mass=0.0, damping=0.0)
+                           .replace('rtol = 1e-6', 'dt = 1e-3'), 'it needs a mass')):
             result = self.run_text(text, '--no-plot', verb='stability')
             self.assertEqual(result.returncode, 1)
             self.assertIn('case.nml: nothing slides steadily', result.stderr)
