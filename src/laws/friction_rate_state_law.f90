@@ -484,9 +484,12 @@ contains
     pure function ln_sinh(y)
         real(wp), intent(in) :: y   !! > 0
         real(wp) :: ln_sinh
+        real(wp), parameter :: far = -0.6_wp * log(epsilon(far))   ! exp(-2 y) is lost beside 1
 
         if (y < 1.0_wp) then
             ln_sinh = log(sinh(y))
+        else if (y > far) then
+            ln_sinh = y - ln_2
         else
             ln_sinh = y - ln_2 + log(1.0_wp - exp(-2.0_wp * y))
         end if
@@ -571,8 +574,7 @@ contains
         if (may_balance_more_than_once(self, trial, stiffness, pressure, dt, old%r)) return
 
         small = 0.1_wp * sqrt(epsilon(small))   ! the next error is about the square of a step
-        call self%rest(0.0_wp, pressure, dt, old, answer%state, answer%resistance)
-        answer%slip = max(low, creep(self, trial, pressure, dt, answer%state%r, high))
+        answer%slip = max(low, creep(self, trial, pressure, dt, old, high))
         do iteration = 1, max_iterations
             call self%slide(answer%slip, pressure, dt, old, answer%state, answer%resistance, &
                 answer%d_slip, answer%d_pressure)
@@ -743,21 +745,28 @@ contains
     end function scale_of_terms
 
     !> The slip under a traction if the state does not evolve by slip.
-    pure function creep(self, traction, pressure, dt, theta, most) result(slip)
+    pure function creep(self, traction, pressure, dt, old, most) result(slip)
         class(rate_state_law), intent(in) :: self
         real(wp), intent(in) :: traction   !! > 0 [F/L^2]
         real(wp), intent(in) :: pressure   !! > 0 [F/L^2]
         real(wp), intent(in) :: dt         !! > 0 [T]
-        real(wp), intent(in) :: theta      !! at the end of the increment, > 0 [T]
+        type(law_state), intent(in) :: old
         real(wp), intent(in) :: most       !! slip that is enough [L]
         real(wp) :: slip                   !! [L]
-        real(wp), parameter :: fast = 1.0e6_wp
-        real(wp) :: y
+        real(wp), parameter :: fast = 1.0e6_wp, ln_most = 700.0_wp, little = 0.1_wp
+        type(law_state) :: new
+        real(wp) :: y, strength
 
         slip = most
         if (traction > fast * self%a * pressure) return
         y = traction / (self%a * pressure)
-        slip = exp(min(ln_sinh(y) - direct_exponent(self, 1.0_wp, dt, log(theta)), log(most)))
+        new%r = old%r
+        if (self%evolution == ageing) new%r = min(old%r + dt, largest)
+        ! where the pressure hardly changes, this is near enough for a start, and cheaper
+        if (self%alpha * abs(pressure - self%pressure_start) > little * self%b &
+            * self%pressure_start) call self%rest(0.0_wp, pressure, dt, old, new, strength)
+        slip = min(most, exp(min(ln_most, ln_sinh(y) - direct_exponent(self, 1.0_wp, dt, &
+            log(new%r)))))
     end function creep
 
     !> The slip rate that the traction asks for, 2 v0 sinh(tau/(a p)) exp(-(f0 + b ln(v0
