@@ -66,6 +66,7 @@ EXCEPTIONS = {
     ('src/friction_slip_rate.f90', 'slip_rate_kernel'): KERNEL,
     ('src/friction_slip_rate_kernel.f90', 'slip_rates_of_block'): KERNEL,
     ('tests/unit/test_slip_rate_kernel.pf', 'slip_rate_kernel'): KERNEL,
+    ('tests/unit/test_subloading_kernel.pf', 'subloading_kernel'): KERNEL,
     ('src/friction_subloading_kernel.f90', 'update_block'): KERNEL,
     ('src/friction_subloading_kernel.f90', 'finish'): LOOPS,
     ('src/lanes/friction_rate_state_lanes.f90', 'step'): LOOPS,
