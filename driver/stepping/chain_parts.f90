@@ -77,7 +77,10 @@ contains
             call method%set_as(generalised_alpha(run%rho_infinity, run%tolerance, &
                 run%max_iterations))
         else
-            call method%set_as(newmark(run%beta, run%gamma, run%tolerance, run%max_iterations))
+            method%beta = run%beta
+            method%gamma = run%gamma
+            method%tolerance = run%tolerance
+            method%max_iterations = run%max_iterations
         end if
     end subroutine choose_method
 
