@@ -4,7 +4,8 @@
 !> A fall goes from a peak to a trough and is over when the force has risen again, by `drop` or so,
 !> and by a twentieth of the fall, so that ringing does not divide it. It is an event if it
 !> is larger than `drop` and the slip rate in it exceeds `slip_rate`, or without that a multiple of
-!> the drive's largest speed since the peak. In a hold the drive counts as fast as before.
+!> what the loading accounts for since the peak: the drive's largest speed, and that at which the
+!> block follows a normal traction that falls. In a hold the drive counts as fast as before.
 !> Everything is looked at in the sense of the loading: a mirrored motion has the same events.
 !>
 !> A force that does not change but for round-off is a plateau: an event begins at the end of one,
@@ -35,6 +36,7 @@ module slip_events
         real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
         real(dp) :: rate = 0.0_dp       !! of the force [F/T]
         real(dp) :: drive = 0.0_dp      !! position of the spring's far end [L]
+        real(dp) :: holds = 0.0_dp      !! static friction force under the normal traction [F]
     contains
         procedure, private :: visit => visit_moment, mirrored
     end type moment
@@ -56,6 +58,7 @@ module slip_events
         real(dp) :: drop = 0.0_dp          !! smallest fall and rise that count [F]
         real(dp) :: slip_rate = 0.0_dp     !! that is fast [L/T]; 0: by the drive's speed
         real(dp) :: stiffness = 1.0_dp     !! of the drive spring [F/L]
+        real(dp) :: impedance = 0.0_dp     !! force that gives the block a velocity [F T/L]
         real(dp) :: speed = 0.0_dp         !! of the drive when it last moved [L/T]
         integer, private :: sense = 1      !! of the loading, 1 or -1
         logical, private :: started = .false.
@@ -65,6 +68,9 @@ module slip_events
         real(dp), private :: fastest = 0.0_dp     !! largest velocity since the peak [L/T]
         real(dp), private :: slipping = 0.0_dp    !! largest slip rate since the peak [L/T]
         real(dp), private :: driving = 0.0_dp     !! largest speed of the drive since the peak [L/T]
+        real(dp), private :: yielding = 0.0_dp    !! the same of what friction that falls with the
+                                                  !! normal traction lets go [L/T]
+        real(dp), private :: held = 0.0_dp        !! static friction force a step ago [F]
         type(slip_event), private :: current = slip_event()           !! the fall so far
         logical, private :: is_event = .false.    !! it was fast enough to be an event
         logical, private :: any_before = .false.
@@ -95,18 +101,23 @@ contains
         logical, intent(in) :: last            !! no step follows
         type(slip_event), allocatable, intent(inout) :: events(:)   !! they are added to these
         type(moment) :: before, now, turn
-        real(dp) :: slip_rate, slack
+        real(dp) :: slip_rate, slack, release
         logical :: turns
 
         before = old%mirrored(self%sense)
         now = new%mirrored(self%sense)
-        slip_rate = (new%slip - old%slip) / (new%time - old%time)
+        ! a contact spring that lets go at once does not move the block
+        slip_rate = min(new%slip - old%slip, max(0.0_dp, now%drive - before%drive - (now%force &
+            - before%force) / self%stiffness)) / (new%time - old%time)
         if (abs(new%drive - old%drive) > 0.0_dp) self%speed = abs(new%drive - old%drive) &
             / (new%time - old%time)
         if (.not. self%started) then
             call self%start_at(before)
             self%reached = before%drive
+            self%held = before%holds
         end if
+        release = freed(self, now, new%time - old%time)
+        self%held = now%holds
         slack = self%drop / self%stiffness
         if (now%drive < self%reached - slack) then
             call self%conclude(events)
@@ -118,9 +129,9 @@ contains
             if (turns) turns = beyond(before, now, turn) <= 2.0_dp * max(self%change, &
                 abs(now%force - before%force))
             if (turns .and. before%drive >= self%reached - round_off * slack) then
-                call self%look(turn, slip_rate, events)
+                call self%look(turn, slip_rate, release, events)
             end if
-            call self%look(now, slip_rate, events)
+            call self%look(now, slip_rate, release, events)
             self%reached = max(self%reached, now%drive)
         end if
         self%change = abs(new%force - old%force)
@@ -133,8 +144,21 @@ contains
         real(dp) :: rate
 
         rate = self%slip_rate
-        if (rate <= 0.0_dp) rate = fast * self%driving
+        if (rate <= 0.0_dp) rate = fast * (self%driving + self%yielding)
     end function limit
+
+    !> Velocity at which a block follows friction that falls with the normal traction: as the drive
+    !> spring gives way, but no more than the whole fall can accelerate it to.
+    pure function freed(self, now, dt) result(v)
+        class(event_finder), intent(in) :: self
+        type(moment), intent(in) :: now
+        real(dp), intent(in) :: dt   !! since `held` [T]
+        real(dp) :: v                !! [L/T]
+
+        v = max(0.0_dp, self%held - now%holds) / (self%stiffness * dt)
+        if (self%impedance > 0.0_dp) v = min(v, max(0.0_dp, self%peak%holds - now%holds) &
+            / self%impedance)
+    end function freed
 
     !> By how much does the force at a turn within a step exceed those at its ends? An excess larger
     !> than the change in a step is refused: velocities at the ends of long steps are uncertain.
@@ -147,12 +171,14 @@ contains
     end function beyond
 
     !> Takes in an instant. An event is known once the force has risen again.
-    pure subroutine look(self, now, slip_rate, events)
+    pure subroutine look(self, now, slip_rate, release, events)
         class(event_finder), intent(inout) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step [L/T]
+        real(dp), intent(in) :: release     !! as of `freed` [L/T]
         type(slip_event), allocatable, intent(inout) :: events(:)
-        real(dp) :: fall, highest
+        type(moment) :: before
+        real(dp) :: fall, yielding
 
         fall = self%peak%force - self%trough%force
         if (fall > self%drop .and. now%force > self%trough%force + max(least_rise * fall, &
@@ -160,10 +186,15 @@ contains
             call self%conclude(events)
             call self%start_at(now)
         else if (now%force >= self%peak%force - uncertainty(self, now)) then
-            highest = max(now%force, self%peak%force)   ! a slow fall does not drag it along
+            before = self%peak
+            yielding = max(self%yielding, release)
             call self%start_at(now)
-            self%peak%force = highest
+            self%peak%force = max(now%force, before%force)   ! a slow fall does not drag it along
+            if (now%force > before%force + uncertainty(self, now)) return
+            self%peak%holds = max(now%holds, before%holds)   ! what falls on a plateau counts
+            self%yielding = yielding
         else
+            self%yielding = max(self%yielding, release)
             call follow_fall(self, now, slip_rate)
         end if
     end subroutine look
@@ -189,6 +220,7 @@ contains
         self%fastest = now%velocity
         self%slipping = 0.0_dp
         self%driving = self%speed
+        self%yielding = 0.0_dp
     end subroutine start_at
 
     pure subroutine follow_fall(self, now, slip_rate)
@@ -230,7 +262,7 @@ contains
         type(moment) :: image
 
         image = moment(self%time, sense * self%force, self%slip, sense * self%velocity, &
-            sense * self%rate, sense * self%drive)
+            sense * self%rate, sense * self%drive, self%holds)
     end function mirrored
 
     !> The moment between two others at which the force turns, by cubic interpolation.
@@ -259,6 +291,7 @@ contains
         between%slip = a%slip + s * (b%slip - a%slip)
         between%velocity = a%velocity + s * (b%velocity - a%velocity)
         between%drive = a%drive + s * (b%drive - a%drive)
+        between%holds = a%holds + s * (b%holds - a%holds)
     end subroutine turning_point
 
     !> Reads or writes what has to be kept to go on.
@@ -269,7 +302,7 @@ contains
         call file%visit(self%speed, self%sense, self%started, self%reached, self%change)
         call self%peak%visit(file)
         call self%trough%visit(file)
-        call file%visit(self%fastest, self%slipping, self%driving)
+        call file%visit(self%fastest, self%slipping, self%driving, self%yielding, self%held)
         call self%current%visit(file)
         call file%visit(self%is_event, self%any_before, self%last_onset)
     end subroutine visit
@@ -279,6 +312,7 @@ contains
         type(archive), intent(inout) :: file
 
         call file%visit(self%time, self%force, self%slip, self%velocity, self%rate, self%drive)
+        call file%visit(self%holds)
     end subroutine visit_moment
 
     subroutine visit_event(self, file)

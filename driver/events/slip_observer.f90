@@ -4,6 +4,7 @@ module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use friction_mod, only : statev_slip
+    use law_facts, only : typical_strength
     use loading_programme, only : programme
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
@@ -21,6 +22,7 @@ module slip_observer
         real(dp) :: stiffness = 0.0_dp                 !! of the drive spring [F/L]
         type(event_finder) :: finder
         real(dp) :: area = 1.0_dp                      !! contact area of a block [L^2]
+        real(dp) :: coefficient = 0.0_dp               !! of static friction
         type(event_totals), allocatable :: pieces(:)
         type(friction_range), allocatable :: friction(:)   !! in the pieces
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
@@ -42,6 +44,8 @@ contains
         self%finder%drop = run%event_force()
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
+        self%finder%impedance = max(run%damping, sqrt(run%stiffness * run%mass))
+        self%coefficient = typical_strength(run%props, 1.0_dp) - typical_strength(run%props, 0.0_dp)
         call self%finder%give_sense(run%loading_sense(), abs(run%drive%first_velocity()))
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
@@ -116,7 +120,8 @@ contains
         end do
         velocity = velocity / n
         now = moment(state%time, spring / n, slip / n, velocity, &
-            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive)
+            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive, &
+            self%area * self%coefficient * max(0.0_dp, self%drive%normal_traction(state%time, i)))
     end function seen
 
     !> Counts an event in the piece of the programme that starts at `piece_start`. A recurrence time

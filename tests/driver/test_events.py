@@ -141,6 +141,30 @@ class Events(EventsOfRuns):
         for name in ('oscillating_normal', 'slide_hold_slide', 'slow_steady'):
             self.assertEqual(self.events((INPUTS / f'{name}.nml').read_text()), [])
 
+    LOADS = ('velocity = {sign}1, normal = 100, 50, 150, 20, 100, duration = 5*1', 'velocity = {sign}1, 0, normal = 100, 10, duration = 1, 1',
+             "velocity = {sign}1, normal = 100, 50, 150, 20, 100, duration = 5*1, normal_change = 'ramp'",
+             'velocity = {sign}1, normal_amplitude = 60, normal_frequency = 3')
+    STEADY = ("'coulomb', mu = 0.6", "'subloading', mu_s = 0.6, mu_k = 0.5, kappa = 1, xi = 0.1, m = 100",
+              "'rate_and_state', a = 0.015, b = 0.01, d_c = 0.01, v0 = 1, f0 = 0.6",
+              "'rate_and_state', a = 0.015, b = 0.01, d_c = 0.01, v0 = 1, f0 = 0.6, evolution = 'slip'")
+
+    def test_steady_sliding_that_follows_its_normal_traction_has_no_events(self):
+        for law in self.STEADY:
+            for load in self.LOADS:
+                for sign, steps in (('', 'dt = 5e-4'), ('-', 'rtol = 1e-5')):
+                    with self.subTest(law=law, load=load, steps=steps):
+                        self.assertEqual(self.events(
+                            f'&friction law = {law}, alpha_n = 1e5, alpha_t = 1e5 /\n'
+                            '&slider mass = 1, stiffness = 1000, damping = 30, normal_traction = 100 /\n'
+                            f'&drive {load.format(sign=sign)} /\n&time t_end = 5, {steps} /\n'), [])
+
+    def test_a_slip_that_a_small_fall_of_the_normal_traction_sets_off_is_an_event(self):
+        for steps in ('dt = 1e-3', 'rtol = 1e-6'):
+            events = self.events(BLOCK + '&drive velocity = 1, normal = 0.01, 0.0095, duration = 2*3.9 /\n'
+                                 f'&time t_end = 5, {steps} /\n')
+            self.assertEqual(len(events), 1)
+            self.assertAlmostEqual(events[0]['onset'], 3.9, delta=1e-2)   # R rises a little on
+
     def test_what_counts_as_an_event_is_chosen_by_keys(self):
         text = BLOCK + '&drive velocity=1 / &time t_end=22, dt=1e-3 / &events '
         self.assertEqual(len(self.events(text + '/')), 6)
