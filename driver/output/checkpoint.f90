@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B730008', int64)   !! "sticks", and 8
+    integer(int64), parameter :: version = int(z'737469636B730009', int64)   !! "sticks", and 9
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name
