@@ -337,7 +337,7 @@ contains
             call ratio_misfit(mat, this%r_start, s, min(r, 1.0_qp), misfit(2), scale(2))
         case (4, 7, 8)
             x = ln_theta(mat, this, s)
-            misfit(2) = x
+            misfit(2) = max(x, log(real(tiny(1.0_dp), qp)))   ! as far as numbers go
             if (mat%law == 7) misfit(2) = max(x, log(least_state * mat%own(3) / mat%own(4)))
             misfit(2) = log(r) - min(misfit(2), log(largest))
             scale(2) = 1.0_qp + abs(x) + abs(log(this%r)) + abs(log(this%dt))
