@@ -96,6 +96,9 @@ int main(int argc, char **argv)
         du[i] = -1e-3;
         du[n + i] = 1e-3 * i / n;
     }
+    free(batch());   /* now there are threads that a child has not, whichever function calls them first */
+    free(points());
+    free(slip_rates());
     agrees = child_agrees(batch) && child_agrees(points) && child_agrees(slip_rates);
     if (WITH_THREADS && threads() == 1) {
         fprintf(stderr, "no threads share the points\n");
