@@ -365,9 +365,11 @@ contains
         by_p = slid%d_pressure
         mean = slid%resistance
         if (surface%follows_path) then   ! the traction at the start of sliding counts, too
-            start_rate = old%inner%r * surface%start_rate(trial%pressure, trial%start, slid%state)
-            pull = pull + start_rate * reload%by_q
-            by_p = by_p + start_rate * reload%by_pressure
+            if (any(abs(reload%by_q) > 0.0_wp)) then
+                start_rate = old%inner%r * surface%start_rate(trial%pressure, trial%start, slid)
+                pull = pull + start_rate * reload%by_q
+                by_p = by_p + start_rate * reload%by_pressure
+            end if
             mean = 0.5_wp * (mean + trial%stiffness * reload%share * hypot(old%u_et(1), &
                 plane%squeeze * old%u_et(2)))
         end if

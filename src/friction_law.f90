@@ -351,11 +351,11 @@ contains
     end function below
 
     !> d(resistance)/d(r at the start of sliding), for a law that follows the path.
-    pure function no_start_rate(self, pressure, start, state) result(rate)
+    pure function no_start_rate(self, pressure, start, slid) result(rate)
         class(law), intent(in) :: self
         real(wp), intent(in) :: pressure           !! contact pressure, > 0 [F/L^2]
         type(law_state), intent(in) :: start       !! state at the start of sliding
-        type(law_state), intent(in) :: state       !! state after it
+        type(sliding), intent(in) :: slid          !! slip, and the state after it
         real(wp) :: rate                           !! [F/L^2]
 
         rate = 0.0_wp

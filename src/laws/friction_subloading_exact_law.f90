@@ -37,16 +37,25 @@ contains
         order = 2
     end function order
 
-    !> The flow of R depends on R alone, so that dR/dR_n = ln R/ln R_n.
-    pure function start_rate(self, pressure, start, state) result(rate)
+    !> The flow of R depends on R alone, so that dR/dR_n = ln R/ln R_n. Next to 1 the R after the
+    !> slip has not the digits of its logarithm; at 1 the quotient is its limit.
+    pure function start_rate(self, pressure, start, slid) result(rate)
         class(subloading_exact_law), intent(in) :: self
         real(wp), intent(in) :: pressure
-        type(law_state), intent(in) :: start, state
+        type(law_state), intent(in) :: start
+        type(sliding), intent(in) :: slid
         real(wp) :: rate
+        real(wp) :: r, y
 
         rate = 0.0_wp
-        if (start%r > 0.0_wp .and. start%r < 1.0_wp) rate = (state%mu * pressure &
-            + self%cohesion) * (log(state%r) / log(start%r))
+        if (.not. start%r > 0.0_wp) return
+        if (start%r < 1.0_wp) then
+            call similarity_ratio(start%r, self%m * slid%slip, r, y)
+            rate = y / (-log(start%r))
+        else
+            rate = exp(-self%m * slid%slip)
+        end if
+        rate = rate * (slid%state%mu * pressure + self%cohesion)
     end function start_rate
 
     pure subroutine rest(self, traction, pressure, dt, old, new, strength)
