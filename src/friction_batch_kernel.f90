@@ -5,8 +5,7 @@
 !> this kernel does not take: numbers that are not finite or beyond 1e20, states that no update
 !> leaves, gaps that close, several possible equilibria, slow convergence. Each point is treated by
 !> itself: its result does not depend on its neighbours. No floating-point exception but inexact and
-!> underflow (but
-!> overflow, where a point has numbers beyond 1e307: the sum that judges them).
+!> underflow; overflow only where numbers beyond 1e307 are judged, by their sum.
 module friction_batch_kernel
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : below_largest, block_task, c_alpha_n, c_alpha_t, c_cap, &

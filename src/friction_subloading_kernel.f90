@@ -9,8 +9,7 @@
 !> this kernel does not take: numbers that are not finite or beyond 1e20, states that no update
 !> leaves, gaps that close, possible snap-back, slow convergence. Each point is treated by itself:
 !> its result does not depend on its neighbours. No floating-point exception but inexact and
-!> underflow (but
-!> overflow, where a point has numbers beyond 1e307: the sum that judges them).
+!> underflow; overflow only where numbers beyond 1e307 are judged, by their sum.
 !>
 !> Compiled once for each vector instruction set, under other names, with a copy of what it uses
 !> (src/CMakeLists.txt).
