@@ -41,8 +41,16 @@ contains
         end do
         constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
         options = 0
-        if (source%place(c_cap) > 0) call find_caps(constants(:, c_cap), options)
-        if (source%place(c_squeeze) > 0) call find_ratios(constants(:, c_squeeze), options)
+        if (source%place(c_cap) > 0) call find_option(constants(:, c_cap), no_cap, with_cap, &
+            options)
+        if (source%place(c_squeeze) > 0) then
+            call find_option(constants(:, c_squeeze), 1.0_wp, with_two_coefficients, options)
+            if (iand(options, with_two_coefficients) > 0) then   ! mu_1/mu_2 from mu_2/mu_1
+                do i = 1, lanes
+                    constants(i, c_squeeze) = 1.0_wp / constants(i, c_squeeze)
+                end do
+            end if
+        end if
         left = 0
         any_wrong = 0
         do i = 1, lanes
@@ -125,39 +133,22 @@ contains
             wrong = 1
     end subroutine follow_rules
 
-    !> Shear caps, where 0 stands for none, and whether a point has one.
-    pure subroutine find_caps(cap, options)
-        real(wp), intent(inout) :: cap(lanes)
-        integer(c_int), intent(inout) :: options
+    !> A number that stands for no option where a point says 0; and whether a point has the option.
+    pure subroutine find_option(values, none, option, options)
+        real(wp), intent(inout) :: values(lanes)
+        real(wp), intent(in) :: none
+        integer(c_int), intent(in) :: option
+        integer(c_int), intent(inout) :: options   !! sum of those that a point has
         integer(c_int64_t) :: others
         integer :: i
 
         others = 0
         do i = 1, lanes
-            cap(i) = merge(cap(i), no_cap, cap(i) > 0.0_wp)
-            others = ior(others, differ(cap(i), no_cap))
+            values(i) = merge(values(i), none, values(i) > 0.0_wp)
+            others = ior(others, differ(values(i), none))
         end do
-        if (others /= 0) options = options + with_cap
-    end subroutine find_caps
-
-    !> mu_1/mu_2 from mu_2/mu_1, where 0 stands for 1, and whether a point has two coefficients.
-    pure subroutine find_ratios(ratio, options)
-        real(wp), intent(inout) :: ratio(lanes)
-        integer(c_int), intent(inout) :: options
-        integer(c_int64_t) :: others
-        integer :: i
-
-        others = 0
-        do i = 1, lanes
-            ratio(i) = merge(ratio(i), 1.0_wp, ratio(i) > 0.0_wp)
-            others = ior(others, differ(ratio(i), 1.0_wp))
-        end do
-        if (others == 0) return
-        options = options + with_two_coefficients
-        do i = 1, lanes
-            ratio(i) = 1.0_wp / ratio(i)
-        end do
-    end subroutine find_ratios
+        if (others /= 0) options = options + option
+    end subroutine find_option
 
     !> A number as an integer, which orders those above zero as they are: silent where a comparison
     !> with NaN raises an exception.
