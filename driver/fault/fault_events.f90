@@ -52,17 +52,20 @@ contains
         real(dp), intent(in) :: time_before         !! start of the step [T]
         type(fault_state), intent(in) :: state      !! its end
         logical, intent(out) :: ended
-        real(dp) :: rate, rate_before, crossing
+        real(dp) :: rate, rate_before, crossing, part
 
         rate_before = self%largest_rate
         rate = together%largest(maxval(state%rate))
         self%largest_rate = rate
         ended = .false.
         if ((rate > here%plan%seismic_rate) .neqv. self%on) then
-            ! the logarithm of the largest rate is taken as linear in the step
-            crossing = time_before + (state%time - time_before) * max(0.0_dp, min(1.0_dp, &
-                log(here%plan%seismic_rate / max(rate_before, tiny(rate))) &
+            ! the logarithm of the largest rate is taken as linear in the step; a run may start
+            ! in an event
+            part = 0.0_dp
+            if ((rate_before > here%plan%seismic_rate) .eqv. self%on) part = max(0.0_dp, &
+                min(1.0_dp, log(here%plan%seismic_rate / max(rate_before, tiny(rate))) &
                 / log(max(rate, tiny(rate)) / max(rate_before, tiny(rate)))))
+            crossing = time_before + (state%time - time_before) * part
             if (self%on) then
                 call self%finish_event(here, together, crossing, state)
                 ended = .true.
@@ -75,7 +78,7 @@ contains
             end if
         end if
         if (.not. self%on) return
-        self%event%peak_rate = max(self%event%peak_rate, rate)
+        self%event%peak_rate = max(self%event%peak_rate, rate_before, rate)
         where (state%rate > here%plan%seismic_rate) self%took_part = 1.0_dp
     end subroutine see
 

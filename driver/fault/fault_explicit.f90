@@ -79,8 +79,7 @@ contains
         type(fault_state), intent(inout) :: state
         character(len=:), allocatable, intent(out) :: problem
 
-        problem = ''
-        call start_rate_state(here, together, state)
+        call start_rate_state(here, together, state, problem)
     end subroutine start_explicit
 
     pure function columns(self) result(n)

@@ -182,6 +182,7 @@ contains
         state%rate = self%rate
         state%traction = two%traction
         state%memory = two%statev(:, statev_r)
+        if (here%plan%rate_state) state%memory = log(state%memory)
     end subroutine step
 
     !> Work of a step, from its start and the ends of its halves: what friction dissipates is its

@@ -91,6 +91,8 @@ contains
             call remove_file(base // '.checkpoint')
             if (.not. quiet) call print_summary(live, most_slip, seconds() - begun)
             call warn_of_energy(live%state%energy)
+            if (live%watch%on) write (error_unit, '(3a)') 'stickslip: warning: an event is ' &
+                // 'under way at t_end: it is not in ', base, '_events.csv'
         end if
         call live%here%surroundings%free()
     end subroutine run_fault

@@ -1,6 +1,6 @@
 !> How a fault under rate-and-state friction starts, from what the law says of one cell.
 module fault_start
-    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_problem, only : fault, fault_state
     use friction_mod, only : friction_facts, friction_law_of, friction_message, friction_update, &
         law_facts, law_state, law_subloading, load_rates, read_surface, sliding_surface, &
@@ -16,10 +16,11 @@ contains
     !> Slip rates and tractions of the plan; the state follows from both. A steady start is one at
     !> the plate rate, everywhere under the traction of steady sliding where that is least: the
     !> stronger cells have aged so little that they slide as fast.
-    subroutine start_rate_state(here, together, state)
+    subroutine start_rate_state(here, together, state, problem)
         type(fault), intent(inout) :: here
         type(team), intent(in) :: together
         type(fault_state), intent(inout) :: state
+        character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
         type(sliding_surface) :: surface
         real(dp) :: given(2), least
         integer :: i, k, cell, status
@@ -49,16 +50,64 @@ contains
                 end do
             end do
         end if
+        call find_states(here, state, cell)
+        call tell_refused_cell(here, together, state, cell, problem)
+    end subroutine start_rate_state
+
+    !> The states that slide as told, under the tractions that are told.
+    subroutine find_states(here, state, refused)
+        type(fault), intent(in) :: here
+        type(fault_state), intent(inout) :: state
+        integer, intent(out) :: refused   !! the first cell that none slides so; or 0
+        real(dp), parameter :: tolerance = 1.0e-6_dp   !! of ln(slip rate)
+        type(sliding_surface) :: surface
+        real(dp) :: traction
+        integer :: cell, status
+
+        refused = 0
         do cell = 1, here%n
             if (is_like_the_last(here, state%rate, cell)) then
                 state%memory(cell) = state%memory(cell - 1)
                 cycle
             end if
             call read_surface(here%props(cell, :), surface, status)
-            state%memory(cell) = state_of(surface, here%prestress(cell) &
-                - here%damping * state%rate(cell), here%pressure(cell), state%rate(cell))
+            traction = here%prestress(cell) - here%damping * state%rate(cell)
+            state%memory(cell) = state_of(surface, traction, here%pressure(cell), &
+                state%rate(cell))
+            if (abs(ln_rate(surface, traction, here%pressure(cell), state%memory(cell)) &
+                - log(state%rate(cell))) <= tolerance .and. traction <= surface%tau_max &
+                * (1.0_dp + epsilon(traction) / tolerance)) cycle
+            refused = cell
+            return
         end do
-    end subroutine start_rate_state
+    end subroutine find_states
+
+    !> What is wrong with the start of the first cell of all that is refused.
+    subroutine tell_refused_cell(here, together, state, cell, problem)
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        integer, intent(in) :: cell   !! first one of this process; or 0
+        character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
+        character(len=24) :: numbers(4)
+        integer(int64) :: own, first
+        real(dp) :: given(2)
+
+        problem = ''
+        own = huge(own)
+        if (cell > 0) own = cell + int(here%plan%nx, int64) * (here%part%first - 1)
+        first = together%lowest(own)
+        if (first == huge(first)) return
+        given = -huge(given)
+        if (own == first) given = [state%rate(cell), here%prestress(cell) - here%damping &
+            * state%rate(cell)]
+        call together%largest_of_each(given)
+        write (numbers, '(g0.6)') here%plan%x_of(int(modulo(first - 1, int(here%plan%nx, int64))) &
+            + 1), here%plan%z_of(int((first - 1) / here%plan%nx) + 1), given
+        problem = 'at the start, at x = ' // trim(numbers(1)) // ', z = ' // trim(numbers(2)) &
+            // ': no state of friction slides at ' // trim(numbers(3)) // ' under a traction of ' &
+            // trim(numbers(4))
+    end subroutine tell_refused_cell
 
     !> Whether a cell starts as the one before it does: its state is then known.
     pure function is_like_the_last(here, rate, cell) result(yes)
@@ -88,7 +137,8 @@ contains
 
         problem = ''
         status = 0
-        if (here%plan%rate_state) call start_rate_state(here, together, state)
+        if (here%plan%rate_state) call start_rate_state(here, together, state, problem)
+        if (len(problem) > 0) return
         if (.not. allocated(state%slip)) then
             allocate (state%slip(here%n), state%memory(here%n), state%traction(here%n))
             state%slip = 0.0_dp
@@ -114,13 +164,13 @@ contains
                 end if
                 if (status < 0) exit
                 statev(cell, :) = contact
-                state%memory(cell) = contact(statev_r)
+                if (.not. here%plan%rate_state) state%memory(cell) = contact(statev_r)
             end do
             if (status < 0) exit
         end do
-        if (status < 0) problem = 'the state at the start is refused: ' // friction_message(status)
-        if (together%any_of(status < 0)) then
-            if (len(problem) == 0) problem = 'the state at the start is refused'
+        status = int(together%lowest(int(min(status, 0), int64)))
+        if (status < 0) then
+            problem = 'the state at the start is refused: ' // friction_message(status)
             return
         end if
         here%prestress = state%traction + here%damping * state%rate
@@ -206,13 +256,17 @@ contains
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, rate
         real(dp) :: ln_theta
-        real(dp), parameter :: rough = 1.0e-2_dp
+        real(dp), parameter :: rough = 1.0e-2_dp, round_off = 1.0e-9_dp
         real(dp) :: before, ln_v, ln_v_before
         integer :: iteration
 
         before = ln_steady_state(surface, traction, pressure, rate, rough)
-        ln_v_before = ln_rate(surface, traction, pressure, before)
-        ln_theta = before + 1.0_dp
+        do iteration = 1, 30   ! at the law's limits slip rates tell nothing of the state
+            ln_v_before = ln_rate(surface, traction, pressure, before)
+            ln_theta = before + 1.0_dp
+            if (abs(ln_rate(surface, traction, pressure, ln_theta) - ln_v_before) > round_off) exit
+            before = before + sign(10.0_dp, ln_v_before - log(rate))
+        end do
         do iteration = 1, 20
             ln_v = ln_rate(surface, traction, pressure, ln_theta)
             if (.not. abs(ln_v - ln_v_before) > 0.0_dp) exit
@@ -257,18 +311,19 @@ contains
         end do
     end function ln_steady_state
 
-    !> Traction of steady sliding.
+    !> Traction of steady sliding, under the cap if there is one.
     function steady_traction(surface, pressure, rate) result(traction)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: pressure, rate
         real(dp) :: traction
+        real(dp), parameter :: most = 1.0e300_dp   !! [F/L^2]
         real(dp) :: low, high, ln_theta
         integer :: halving
 
         ln_theta = ln_steady_state(surface, 0.0_dp, pressure, rate, 0.0_dp)
         low = 0.0_dp
         high = pressure
-        do while (ln_rate(surface, high, pressure, ln_theta) < log(rate))
+        do while (ln_rate(surface, high, pressure, ln_theta) < log(rate) .and. high < most)
             high = 2.0_dp * high
         end do
         do halving = 1, 80
@@ -279,6 +334,7 @@ contains
                 high = traction
             end if
         end do
+        traction = min(traction, surface%tau_max)
     end function steady_traction
 
 end module fault_start

@@ -10,9 +10,10 @@ module fault_reader
     use csv_table, only : table_reader
     use fault_settings, only : fault_plan
     use friction_mod, only : friction_facts, onset_drops
+    use grid_map, only : map_on_grid
     use input_kind, only : refuse_other_verb
-    use law_input, only : read_friction
-    use namelist_input, only : above, any_number, at_least, between, namelist_file
+    use law_input, only : read_friction, refuse_orthotropy
+    use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
     use namelist_parser, only : namelist_entry
     use number_text, only : full_row
     use profile_reader, only : joined, profile, put_number, read_map, take_profiles
@@ -43,6 +44,7 @@ contains
         call read_initial(file, plan, read_netcdf)
         call read_times(file, plan)
         call read_output(file, plan)
+        call refuse_orthotropy(file, 'faults')
         call read_units(file, plan%units)
         plan%fingerprint = fingerprint_of(file%listing(without=''), plan)
         call file%refuse_unknown()
@@ -61,7 +63,6 @@ contains
         call file%get_real(group, 'width', plan%width, above(0.0_dp))
         call file%get_real(group, 'shear_modulus', plan%shear_modulus, above(0.0_dp))
         call file%get_real(group, 'wave_speed', plan%wave_speed, above(0.0_dp))
-        call file%get_real(group, 'plate_rate', plan%plate_rate, at_least(0.0_dp))
         if (plan%geometry == 'antiplane_half') then
             call file%belongs_elsewhere(group, 'nx', along_strike)
             call file%belongs_elsewhere(group, 'length', along_strike)
@@ -101,7 +102,7 @@ contains
                 call read_friction(file, props)
                 call file%get_real(group, 'normal_traction', normal, above(0.0_dp))
                 if (size(file%faults) > faults_before) then
-                    if (size(profiles) > 0) call tell_node(file, x(i), z(k))
+                    call tell_node(file, faults_before, profiles, x(i), z(k))
                     return
                 end if
                 if (.not. allocated(plan%constants%values)) then
@@ -114,6 +115,8 @@ contains
                 end associate
             end do
         end do
+        if (plan%rate_state) call file%refuse('friction', 'theta_0', &
+            'has no effect on a fault, whose states follow from slip rates and tractions')
         plan%constants%x = x
         plan%constants%z = z
         if (drops) call file%reject('friction', 'law', 'drops as soon as slip is fast: no length ' &
@@ -128,16 +131,18 @@ contains
         character(len=7), parameter :: keys(2) = ['alpha_n', 'alpha_t']
         real(dp), parameter :: stiffer = 1.0e3_dp   !! than the surroundings of a cell
         type(namelist_entry) :: spring
+        real(dp) :: stiffness   !! [F/L^3]
         integer :: i
 
-        if (.not. plan%width > 0.0_dp .or. plan%nz < 1) return
+        stiffness = 1.0_dp
+        if (min(plan%width, plan%shear_modulus, real(plan%nz, dp)) > 0.0_dp) stiffness = stiffer &
+            * plan%shear_modulus / plan%dz()   ! else no fault that follows from another
         do i = 1, size(keys)
             if (file%given('friction', keys(i))) cycle
             spring%group = 'friction'
             spring%key = keys(i)
             allocate (spring%values(1))
-            spring%values(1)%text = full_row([stiffer * max(plan%shear_modulus, tiny(1.0_dp)) &
-                / plan%dz()])
+            spring%values(1)%text = full_row([stiffness])
             file%entries = [file%entries, spring]
             deallocate (spring%values)
         end do
@@ -157,11 +162,24 @@ contains
         end do
     end subroutine set_values
 
-    subroutine tell_node(file, x, z)
+    !> Where it is that constants of a profile are refused.
+    subroutine tell_node(file, faults_before, profiles, x, z)
         type(namelist_file), intent(inout) :: file
+        integer, intent(in) :: faults_before   !! those behind are of this node
+        type(profile), intent(in) :: profiles(:)
         real(dp), intent(in) :: x, z
         character(len=80) :: text
+        logical :: of_profile
+        integer :: i, j
 
+        of_profile = .false.
+        do i = faults_before + 1, size(file%faults)
+            do j = 1, size(profiles)
+                of_profile = of_profile .or. index(file%faults(i)%text, '&' // profiles(j)%group &
+                    // ' ' // profiles(j)%key // ' ') == 1
+            end do
+        end do
+        if (.not. of_profile) return
         write (text, '(a, g0.6, a, g0.6)') 'the constants of friction at x = ', x, ', z = ', z
         call file%add_fault(0, trim(text) // ' are refused')
     end subroutine tell_node
@@ -189,31 +207,36 @@ contains
         type(fault_plan), intent(inout) :: plan
         procedure(table_reader), optional :: read_netcdf
         character(len=:), allocatable :: how
-        logical :: sound
+        type(rule) :: moving
+        logical :: sound, by_rate
 
         call file%get_choice(group, 'initial', how, ['steady', 'file  '], default='steady')
         plan%steady = how == 'steady'
         if (plan%steady) then
+            moving = above(0.0_dp)
+            moving%text = moving%text // " with initial = 'steady'"
+            call file%get_real(group, 'plate_rate', plan%plate_rate, moving)
             call file%belongs_elsewhere(group, 'initial_file', "needs initial = 'file'")
-            if (.not. plan%plate_rate > 0.0_dp .and. file%given(group, 'plate_rate')) then
-                call file%reject(group, 'plate_rate', "must be > 0 with initial = 'steady'")
-            end if
+            return
+        end if
+        call file%get_real(group, 'plate_rate', plan%plate_rate, at_least(0.0_dp))
+        call file%require(group, 'initial_file')
+        by_rate = plan%rate_state .and. allocated(plan%constants%z)   ! else the law is not known
+        if (by_rate) then
+            call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
+                plan%initial, sound, read_netcdf)
         else
-            call file%require(group, 'initial_file')
-            if (.not. allocated(plan%constants%z)) return   ! the law tells what columns it takes
-            if (plan%rate_state) then
-                call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
-                    plan%initial, sound, read_netcdf)
-            else
-                call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, &
-                    sound, read_netcdf)
-            end if
-            if (.not. sound) return
-            if (any(plan%initial%values(1, :, :) < 0.0_dp)) call file%reject(group, &
-                'initial_file', 'its column traction must be >= 0')
-            if (.not. plan%rate_state) return
+            call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, sound, &
+                read_netcdf)
+        end if
+        if (.not. sound) return
+        if (by_rate) then
+            if (any(plan%initial%values(1, :, :) <= 0.0_dp)) call file%reject(group, &
+                'initial_file', 'its column traction must be > 0: it drives the slip rate')
             if (any(plan%initial%values(2, :, :) <= 0.0_dp)) call file%reject(group, &
                 'initial_file', 'its column slip_rate must be > 0')
+        else if (any(plan%initial%values(1, :, :) < 0.0_dp)) then
+            call file%reject(group, 'initial_file', 'its column traction must be >= 0')
         end if
     end subroutine read_initial
 
@@ -232,16 +255,16 @@ contains
                 "needs a law that gives the slip rate: law = 'rate_and_state', " &
                 // "'flash_heating', 'linker_dieterich'")
         end if
-        if (scheme == 'implicit') plan%explicit = .false.
+        if (scheme == 'implicit' .or. (scheme == 'auto' .and. file%given('friction', &
+            'tau_max'))) plan%explicit = .false.   ! what slides under a cap is stiff
     end subroutine read_times
 
     subroutine read_output(file, plan)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(inout) :: plan
-        real(dp), allocatable :: contours(:)
 
         call file%get_reals('output', 'stations', plan%station_z, at_least(0.0_dp))
-        if (any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
+        if (plan%width > 0.0_dp .and. any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
             'must be from 0 to width')
         if (plan%geometry == 'antiplane_half') then
             call file%belongs_elsewhere('output', 'stations_x', along_strike)
@@ -251,11 +274,28 @@ contains
             if (size(plan%station_x) == 0) plan%station_x = 0.0_dp * plan%station_z
             if (size(plan%station_x) /= size(plan%station_z)) call file%reject('output', &
                 'stations_x', 'must have as many values as stations')
-            if (any(abs(plan%station_x) > 0.5_dp * plan%length)) call file%reject('output', &
-                'stations_x', 'must be within length/2 of the middle')
+            if (plan%length > 0.0_dp .and. any(abs(plan%station_x) > 0.5_dp * plan%length)) call &
+                file%reject('output', 'stations_x', 'must be within length/2 of the middle')
         end if
         call file%get_real('output', 'seismic_rate', plan%seismic_rate, above(0.0_dp), &
             default=1.0e-3_dp)
+        call read_contours(file, plan)
+        call file%get_integer('output', 'interval', plan%interval, at_least(1.0_dp), default=1)
+        call file%get_integer('output', 'fields', plan%fields, at_least(0.0_dp), default=0)
+        call file%get_real('output', 'checkpoint', plan%checkpoint, at_least(0.0_dp), &
+            default=60.0_dp)
+    end subroutine read_output
+
+    subroutine read_contours(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(inout) :: plan
+        real(dp), allocatable :: contours(:)
+
+        if (plan%geometry /= 'antiplane_half') then
+            call file%belongs_elsewhere('output', 'slip_contours', &
+                "belongs to geometry = 'antiplane_half'")
+            return
+        end if
         call file%get_reals('output', 'slip_contours', contours, above(0.0_dp))
         if (size(contours) == 2) then
             plan%contours = contours
@@ -263,11 +303,7 @@ contains
             call file%reject('output', 'slip_contours', &
                 'takes two values: time between contours, and that during events')
         end if
-        call file%get_integer('output', 'interval', plan%interval, at_least(1.0_dp), default=1)
-        call file%get_integer('output', 'fields', plan%fields, at_least(0.0_dp), default=0)
-        call file%get_real('output', 'checkpoint', plan%checkpoint, at_least(0.0_dp), &
-            default=60.0_dp)
-    end subroutine read_output
+    end subroutine read_contours
 
     !> Another number for any input with other results, whatever the clock of the checkpoints.
     pure function fingerprint_of(listing, plan) result(number)
@@ -277,10 +313,19 @@ contains
 
         number = 0
         call mix_text(listing, number)
-        if (allocated(plan%constants%values)) call mix(transfer(plan%constants%values, [number]), &
-            number)
-        if (allocated(plan%initial%values)) call mix(transfer(plan%initial%values, [number]), &
-            number)
+        call mix_map(plan%constants, number)
+        call mix_map(plan%initial, number)
     end function fingerprint_of
+
+    !> Nodes and values.
+    pure subroutine mix_map(map, number)
+        type(map_on_grid), intent(in) :: map
+        integer(int64), intent(inout) :: number
+
+        if (.not. (allocated(map%z) .and. allocated(map%values))) return
+        call mix(transfer(map%x, [number]), number)
+        call mix(transfer(map%z, [number]), number)
+        call mix(transfer(map%values, [number]), number)
+    end subroutine mix_map
 
 end module fault_reader

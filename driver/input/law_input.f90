@@ -119,15 +119,17 @@ contains
         value = real(i, dp)
     end subroutine read_choice
 
-    !> A block slides back and forth along one line, where orthotropic friction is isotropic.
-    subroutine refuse_orthotropy(file)
+    !> What slides back and forth along one line finds orthotropic friction isotropic.
+    subroutine refuse_orthotropy(file, what)
         type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: what   !! slides so, as a plural
         character(len=*), parameter :: keys(2) = ['mu_ratio ', 'direction']
         integer :: i
 
         do i = 1, size(keys)
             call file%refuse(group, trim(keys(i)), &
-                'has no effect on blocks, which slide along one line: it is for the verb point')
+                'has no effect on ' // what // ', which slide along one line: it is for the ' &
+                // 'verb point')
         end do
     end subroutine refuse_orthotropy
 

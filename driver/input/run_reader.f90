@@ -29,7 +29,7 @@ contains
         call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
         call read_chain(file, run%mass, run%chain)
         call read_block_friction(file, run)
-        call refuse_orthotropy(file)
+        call refuse_orthotropy(file, 'blocks')
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
         call file%get_real('slider', 'damping', run%damping, at_least(0.0_dp), default=0.0_dp)
         call file%get_real('slider', 'area', run%area, above(0.0_dp), default=1.0_dp)

@@ -262,8 +262,9 @@ class Restart(FaultTest):
             time.sleep(0.01)
         run.send_signal(signal.SIGINT)
         run.communicate()
-        (self.place / 'a.csv').write_text('z,a\n0,0.011\n15e3,0.010\n18e3,0.025\n')
-        self.assertIn('not the one that wrote', self.run_fault(name, '--resume', expect=1).stderr)
+        for other in ('z,a\n0,0.011\n15e3,0.010\n18e3,0.025\n', A.replace('15e3', '14e3')):   # values, places
+            (self.place / 'a.csv').write_text(other)
+            self.assertIn('not the one that wrote', self.run_fault(name, '--resume', expect=1).stderr)
         (self.place / 'a.csv').write_text(A)
         damaged = bytearray(checkpoint.read_bytes())
         damaged[len(damaged) // 2] ^= 4
@@ -387,6 +388,16 @@ class Laws(FaultTest):
         self.assertAlmostEqual(float(last['implicit']['slip']), float(last['explicit']['slip']), delta=0.01)
         self.assertAlmostEqual(float(last['implicit']['traction']) / 50e6, float(last['explicit']['traction']) / 50e6,
                                delta=1e-3)
+        self.assertAlmostEqual(float(last['implicit']['log10_theta']), float(last['explicit']['log10_theta']), delta=0.01)
+
+    def test_what_slides_under_a_cap_is_stepped_implicitly(self):
+        """Steady sliding would take 31.7 MPa: under the cap the whole fault slides at the plate rate for ever."""
+        for cap in ('10e6', '28e6'):   # below and above the traction of the start
+            text = SMALL.replace('f0 = 0.6', f'f0 = 0.6, tau_max = {cap}').replace('1.0e10', '3.0e10')
+            self.run_fault(self.write(text), '--quiet')
+            *_, end = self.rows('case_out/case_station_2.csv').values()
+            self.assertAlmostEqual(float(end['traction']) / float(cap), 1, delta=1e-12)
+            self.assertAlmostEqual(float(end['log10_slip_rate']), -9, delta=1e-3)
 
     def test_flash_heating_weakens_what_slips_fast_and_nothing_else(self):
         text = SMALL.replace('d_c = 0.032', 'd_c = 0.132').replace('1.0e10', '1.2e10')
@@ -456,6 +467,39 @@ class Laws(FaultTest):
         self.assertAlmostEqual(float(last['slip']), 1e-9 * 1.0e10, delta=1e-6)
         self.assertAlmostEqual(float(last['traction']), 30e6, delta=1)
 
+    def start(self, traction, slip_rate):
+        (self.place / 'start.csv').write_text(f'z,traction,slip_rate\n0,{traction},{slip_rate}\n')
+        return SMALL.replace('= 50e6', "= 50e6, initial = 'file', initial_file = 'start.csv'").replace('1.0e10', '1.0e7')
+
+    def test_a_run_may_start_in_an_event(self):
+        """Friction that strengthens: the slip rate falls from the start on."""
+        name = self.write(self.start('30.9e6', 0.03).replace('b = 0.015', 'b = 0.008'))
+        self.run_fault(name, '--quiet')
+        event, = self.events('case_out', 'case')
+        self.assertEqual(float(event['onset']), 0)
+        self.assertAlmostEqual(float(event['peak_slip_rate']), 0.03, delta=1e-15)
+        first, *rows = self.rows('case_out/case_station_1.csv').values()
+        slip = next(float(row['slip']) for row in rows if float(row['time']) >= float(event['duration']))
+        self.assertAlmostEqual(float(event['largest_slip']) / slip, 1, delta=0.2)
+
+    def test_an_event_under_way_at_the_end_is_a_warning(self):
+        name = self.write(self.start('30.9e6', 0.03).replace('1.0e7', '1.0'))
+        self.assertIn('is under way at t_end', self.run_fault(name, '--quiet').stderr)
+        self.assertEqual(self.events('case_out', 'case'), [])
+
+    def test_a_start_far_from_steady_sliding_has_its_slip_rate(self):
+        """A traction that would drive what has slid steadily beyond all that is counted: e^94 s of age hold it."""
+        self.run_fault(self.write(self.start('80e6', 4e-10).replace('b = 0.015', 'b = 0.012')), '--quiet')
+        first, *_ = self.rows('case_out/case_station_1.csv').values()
+        self.assertAlmostEqual(float(first['log10_slip_rate']), math.log10(4e-10), delta=1e-9)
+        self.assertAlmostEqual(float(first['traction']), 80e6, delta=1)
+
+    def test_a_start_that_no_state_gives_is_refused_with_its_place(self):
+        text = self.start('30e6', 1e-9).replace('f0 = 0.6', 'f0 = 0.6, tau_max = 29e6')
+        for processes in (1, 3) if MPIRUN else (1,):
+            told = self.run_fault(self.write(text), expect=1, processes=processes).stderr
+            self.assertIn('z = 312.500: no state of friction slides at 0.100000E-8 under a traction of 0.300000E+8', told)
+
     def test_a_start_beyond_the_strength_is_refused(self):
         (self.place / 'a.csv').write_text(A.replace('22.5e6', '40e6'))
         self.assertIn('state at the start is refused', self.run_fault(self.write(SUBLOADING), expect=1).stderr)
@@ -490,6 +534,32 @@ class Input(FaultTest):
             SMALL.replace("law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6",
                           "law = 'coulomb', mu = 0.6").replace('rtol = 1e-4', "rtol = 1e-4, scheme = 'explicit'")))
         self.assertIn('two values', self.faults(SMALL.replace('3e8, 10', '3e8')))
+
+    def test_faults_that_follow_from_others_are_not_told(self):
+        for old, new, told in (('width = 40e3', 'width = 0', '&fault width = 0: must be > 0'),
+                               ('nz = 64', 'nz = 0', '&fault nz = 0: must be from 2'),
+                               ('shear_modulus = 32.04e9', "shear_modulus = 'a'", "shear_modulus = 'a': must be a number"),
+                               ('plate_rate = 1e-9', 'plate_rate = -1', "plate_rate = -1: must be > 0 with initial = 'steady'"),
+                               ('normal_traction = 50e6', 'normal_traction = -1', 'normal_traction = -1: must be > 0')):
+            stderr = self.faults(SMALL.replace(old, new))
+            self.assertIn(told, stderr)
+            self.assertEqual(stderr.count('\n'), 1, stderr)
+
+    def test_keys_without_effect_are_faults(self):
+        self.assertIn("belongs to geometry = 'antiplane_half'", self.faults(
+            PLANE.replace('fields = 5', 'slip_contours = 3e8, 10')))
+        for key in ('theta_0 = 1', 'mu_ratio = 0.5'):
+            self.assertIn('has no effect on', self.faults(SMALL.replace('f0 = 0.6', 'f0 = 0.6, ' + key)))
+
+    def test_the_initial_file_is_looked_for_whatever_else_is_wrong(self):
+        text = SMALL.replace('= 50e6', "= 50e6, initial = 'file', initial_file = 'no_such.csv'").replace('b = 0.015', 'b = -1')
+        stderr = self.faults(text)
+        for part in ('&friction b = -1', 'no_such.csv'):
+            self.assertIn(part, stderr)
+        self.assertNotIn('unknown key', stderr)
+        (self.place / 'start.csv').write_text('z,traction,slip_rate\n0,0,1e-9\n')
+        self.assertIn('traction must be > 0', self.faults(SMALL.replace(
+            '= 50e6', "= 50e6, initial = 'file', initial_file = 'start.csv'")))
 
     def test_cells_too_large_are_a_warning(self):
         text = self.run_fault(self.write(SMALL.replace('1.0e10', '1.0e6').replace('0.032', '0.008'))).stderr
