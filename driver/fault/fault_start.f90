@@ -75,8 +75,8 @@ contains
             state%memory(cell) = state_of(surface, traction, here%pressure(cell), &
                 state%rate(cell))
             if (abs(ln_rate(surface, traction, here%pressure(cell), state%memory(cell)) &
-                - log(state%rate(cell))) <= tolerance .and. traction <= surface%tau_max &
-                * (1.0_dp + epsilon(traction) / tolerance)) cycle
+                - log(state%rate(cell))) <= tolerance .and. traction * (1.0_dp &
+                - epsilon(traction) / tolerance) <= surface%tau_max) cycle
             refused = cell
             return
         end do
