@@ -264,8 +264,8 @@ contains
         type(fault_plan), intent(inout) :: plan
 
         call file%get_reals('output', 'stations', plan%station_z, at_least(0.0_dp))
-        if (plan%width > 0.0_dp .and. any(plan%station_z > plan%width)) call file%reject('output', 'stations', &
-            'must be from 0 to width')
+        if (plan%width > 0.0_dp .and. any(plan%station_z > plan%width)) call file%reject( &
+            'output', 'stations', 'must be from 0 to width')
         if (plan%geometry == 'antiplane_half') then
             call file%belongs_elsewhere('output', 'stations_x', along_strike)
             plan%station_x = 0.0_dp * plan%station_z
