@@ -40,11 +40,8 @@ module friction_lane_constants
                                            !! made for
     end type lane_plan
 
-    !> Constants that are not zero are of ordinary size, or lanes do not take them.
-    real(wp), parameter :: least = 1.0e-20_wp, most = 1.0e20_wp
-    !> Of modules friction_rate_state_lanes and friction_rate_state_evolution.
-    real(wp), parameter :: least_direct = 1.0e-9_wp, least_evolution = 2.0_wp**(-6), &
-        most_pressing = 64.0_wp
+    !> Of constants that lanes take: no product of some of them overflows.
+    real(wp), parameter :: most = 1.0e20_wp
 
 contains
 
@@ -88,10 +85,8 @@ contains
         if (option + 2 <= nprops) call must_stay(option + 2, props(option + 2), plan)
         if (option + 3 <= nprops) call must_stay(option + 3, props(option + 3), plan)
         if (option + 4 <= nprops) call must_stay(option + 4, props(option + 4), plan)
-        if (.not. ordinary([options%tau_max, options%cohesion, options%damping])) plan%kind &
-            = lane_none
-        if (.not. ordinary(plan%source%value(:c_r_0))) plan%kind = lane_none
-        if (.not. ordinary(plan%source%value(c_own:))) plan%kind = lane_none
+        if (any([options%tau_max, options%cohesion, options%damping, plan%source%value(:c_r_0), &
+            plan%source%value(c_own:)] >= most)) plan%kind = lane_none
     end subroutine plan_lanes
 
     !> The part of the law itself.
@@ -171,28 +166,14 @@ contains
         type is (coulomb_law); kind = lane_coulomb
         type is (static_kinetic_law); kind = lane_static_kinetic
         type is (rate_state_law)
-            if (own%a >= least_direct * max(own%b, own%f0)) then
-                kind = merge(lane_slip_law, lane_ageing, own%evolution == slipping)
-            end if
+            kind = merge(lane_slip_law, lane_ageing, own%evolution == slipping)
         type is (linker_dieterich_law)
-            if (own%a >= least_direct * max(own%b, own%f0) .and. own%alpha < most_pressing &
-                * own%b) then
-                kind = merge(lane_pressed_slip_law, lane_pressed_ageing, own%evolution == slipping)
-            end if
-        type is (flash_heating_law)
-            if (own%a >= least_direct * max(own%b, own%f0) .and. own%b >= least_evolution &
-                * max(own%a, own%f0)) kind = lane_flash_heating
+            kind = merge(lane_pressed_slip_law, lane_pressed_ageing, own%evolution == slipping)
+        type is (flash_heating_law); kind = lane_flash_heating
         type is (slip_weakening_law); kind = lane_slip_weakening
         type is (slip_weakening_healing_law); kind = lane_healing
         end select
     end function kind_of
-
-    pure function ordinary(values)
-        real(wp), intent(in) :: values(:)
-        logical :: ordinary
-
-        ordinary = all(values < most .and. (values > least .or. .not. abs(values) > 0.0_wp))
-    end function ordinary
 
     !> The same constants for all lanes.
     pure subroutine spread_constants(plan, constants)
