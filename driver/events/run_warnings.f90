@@ -41,7 +41,7 @@ contains
         real(dp) :: passed
 
         associate (e => result%energy)
-            passed = max(abs(e%drive_work), abs(e%at_start), e%dissipated + e%damped)
+            passed = max(e%most_work, abs(e%at_start), e%dissipated + e%damped)
             if (abs(e%unbalanced()) <= allowed * passed) return
             write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
                 100.0_dp * abs(e%unbalanced()) / passed, ' %: take '

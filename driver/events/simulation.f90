@@ -29,6 +29,8 @@ module simulation
         integer :: taken = 0                   !! steps
         integer :: snap_backs = 0              !! steps that saw several equilibria
         real(dp) :: energy_at_start = 0.0_dp   !! held then, in all forms [F L]
+        real(dp) :: let_go = 0.0_dp            !! lost by contact springs when they opened [F L]
+        real(dp) :: most_work = 0.0_dp         !! of the drive, whichever way [F L]
         logical :: resumed = .false.           !! it has been read from a checkpoint
         character(len=:), allocatable :: problem   !! why it cannot start; or empty
     contains
@@ -87,6 +89,8 @@ contains
             end if
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
             live%taken = live%taken + 1
+            live%let_go = live%let_go + live%steps%system%let_go(live%state, live%other)
+            live%most_work = max(live%most_work, abs(live%other%drive_work))
             call swap_states(live%state, live%other)
             news%complete = report%complete
             call show_all(live, observers, news)
@@ -172,6 +176,8 @@ contains
         result%unresolved = live%chain_events%finder%unresolved
         call live%steps%system%take_stock(live%state, result%energy)
         result%energy%at_start = live%energy_at_start
+        result%energy%dissipated = result%energy%dissipated + live%let_go
+        result%energy%most_work = live%most_work
     end subroutine sum_up
 
     !> Reads or writes what has to be kept to go on; to read, the run must have been started.
@@ -183,7 +189,8 @@ contains
         call self%steps%visit(file)
         call self%slip_events%visit(file)
         call self%chain_events%visit(file)
-        call file%visit(self%taken, self%snap_backs, self%energy_at_start)
+        call file%visit(self%taken, self%snap_backs, self%energy_at_start, self%let_go, &
+            self%most_work)
     end subroutine visit
 
 end module simulation

@@ -12,7 +12,7 @@ module slider_system
     use archive_file, only : archive
     use friction_mod, only : facts => law_facts, friction_facts, friction_ok, friction_update, &
         friction_update_batch, prop_alpha_n, prop_alpha_t, statev_dissipation, statev_mu, &
-        statev_r, statev_size, statev_u_et, statev_u_n
+        statev_r, statev_size, statev_status, statev_u_et, statev_u_n
     use law_facts, only : cohesion_of_each
     implicit none
     private
@@ -57,7 +57,7 @@ module slider_system
     contains
         procedure :: add_coupling, coupling_energy, props_of
         procedure :: account, carried_pressure, pull, push
-        procedure :: take_stock, energy_of
+        procedure :: take_stock, energy_of, let_go
     end type slider
 
     !> How a block starts, if not at rest on a virgin contact with a slack spring.
@@ -95,6 +95,7 @@ module slider_system
     type :: energy_balance
         real(dp) :: at_start = 0.0_dp   !! held at the start, in all forms
         real(dp) :: drive_work = 0.0_dp
+        real(dp) :: most_work = 0.0_dp   !! of the drive, whichever way
         real(dp) :: kinetic = 0.0_dp, spring = 0.0_dp, contact = 0.0_dp   !! held now
         real(dp) :: damped = 0.0_dp, dissipated = 0.0_dp                  !! lost
     contains
@@ -587,6 +588,24 @@ contains
         energy%contact = energy%contact + 0.5_dp * self%area &
             * self%carried_pressure(state%statev(1, statev_u_n))**2 / self%props(prop_alpha_n)
     end subroutine take_stock_across
+
+    !> Energy that contact springs still held when their contacts opened: nothing gets it back.
+    pure function let_go(self, old, new) result(energy)
+        class(slider), intent(in) :: self
+        type(slider_state), intent(in) :: old, new
+        real(dp) :: energy   !! [F L]
+        real(dp), parameter :: open = 3.0_dp
+        real(dp) :: alpha   !! [F/L^3]
+        integer :: i
+
+        energy = 0.0_dp
+        alpha = self%props(prop_alpha_t)
+        do i = 1, size(new%x)
+            if (new%statev(i, statev_status) < open) cycle
+            if (allocated(self%constants)) alpha = self%constants(i, prop_alpha_t)
+            energy = energy + 0.5_dp * self%area * alpha * old%statev(i, statev_u_et)**2
+        end do
+    end function let_go
 
     !> Held by the springs, the contact and the motion together.
     pure function energy_of(self, state) result(total)

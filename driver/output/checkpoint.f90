@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B730009', int64)   !! "sticks", and 9
+    integer(int64), parameter :: version = int(z'737469636B73000A', int64)   !! "sticks", and 10
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name

@@ -144,7 +144,7 @@ contains
                 self%dt = 0.25_dp * dt
             end if
             self%rejected = self%rejected + 1
-            if (self%dt < max(self%dt_min, shortest * old%time)) then
+            if (.not. self%dt > max(self%dt_min, shortest * old%time)) then
                 ! friction that meets a sudden load slips by the logarithm of the time it has: no
                 ! step is short enough for that
                 error = 1.0_dp

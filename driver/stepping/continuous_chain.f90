@@ -129,7 +129,7 @@ contains
             self%rejected = self%rejected + 1
             again = .true.
             self%dt = h * max(0.2_dp, 0.9_dp * error**(-0.25_dp))
-            if (self%dt < max(self%dt_min, shortest * old%time)) then
+            if (.not. self%dt > max(self%dt_min, shortest * old%time)) then
                 report%status = friction_no_convergence
                 if (self%jumps(old%time, error)) report%status = friction_no_rate
                 return

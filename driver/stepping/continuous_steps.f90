@@ -249,8 +249,8 @@ contains
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
-        type(trial) :: tried
-        real(dp) :: end, wanted, grown, before, opening
+        type(trial) :: tried, whole
+        real(dp) :: end, wanted, before, opening
         integer :: piece
         logical :: again
 
@@ -274,11 +274,13 @@ contains
             end if
             tried%h = end - old%time
             call self%attempt(old%time, tried)
+            whole = tried
+            if (tried%error <= 1.0_dp) call self%locate(old%time, tried)
             if (tried%error <= 1.0_dp) exit
             self%rejected = self%rejected + 1
             again = .true.
             self%dt = tried%h * max(0.2_dp, 0.9_dp * tried%error**(-1.0_dp / order_of(self)))
-            if (self%dt < max(self%dt_min, shortest * old%time)) then
+            if (.not. self%dt > max(self%dt_min, shortest * old%time)) then
                 if (stopped(self)) then
                     call self%settle(old%time)
                     self%dt = 1.0e3_dp * shortest * old%time
@@ -289,11 +291,9 @@ contains
                 return
             end if
         end do
-        grown = tried%h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(tried%error, 1.0e-10_dp) &
-            **(-1.0_dp / order_of(self)))
-        if (tried%h < 0.99_dp * wanted) grown = max(grown, wanted)   ! the limit has cut it
-        self%dt = grown
-        call self%locate(old%time, tried)
+        self%dt = whole%h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(whole%error, &
+            1.0e-10_dp)**(-1.0_dp / order_of(self)))
+        if (whole%h < 0.99_dp * wanted) self%dt = max(self%dt, wanted)   ! the limit has cut it
         if (tried%switch > 0) end = old%time + tried%h
         call self%choose_method(tried)
         self%y = tried%y
@@ -376,6 +376,11 @@ contains
                 eq%phase = phase_open
                 if (pressure > open_level(self)) eq%phase = merge(phase_slide, phase_stick, &
                     eq%surface%traits%onset == onset_gradual .or. eq%damper > 0.0_dp)
+                if (eq%rigid .and. eq%phase == phase_stick .and. abs(self%y(velocity)) &
+                    > 0.0_dp) then
+                    eq%phase = phase_slide
+                    eq%sense = eq%sense_of(self%y(velocity))
+                end if
                 self%y(ratio) = 0.0_dp
                 self%y(elastic) = 0.0_dp
                 if (eq%phase == phase_slide .and. eq%surface%traits%memory == 1) then
@@ -596,6 +601,8 @@ contains
                 call self%equations%rates(t + tried%h, tried%y, tried%last, failed)
                 if (failed) tried%error = huge(tried%error)
                 if (.not. self%system%mass > 0.0_dp) call damp(self, t, tried)
+                if (self%equations%follows_traction() .and. .not. failed) call balance(self, t, &
+                    tried)
             end if
         else
             call dormand_prince_step(self%equations, t, tried%h, self%y, self%first, &
@@ -604,6 +611,33 @@ contains
         call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
         self%jumped = .not. tried%error < huge(tried%error)
     end subroutine attempt
+
+    !> The traction of a rigid contact that creeps comes to balance the faster the slower it slips.
+    !> Where neither inertia nor damper has a say, it is the balance's. Else the slip rate may grow
+    !> by so much only: where the traction comes to balance far more slowly at the end of a step
+    !> than at its start, the estimate of the error sees nothing.
+    subroutine balance(self, t, tried)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp), parameter :: no_say = 1.0e-8_dp   !! part
+        real(dp), parameter :: most = 3.0_dp        !! logarithm of the growth
+        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
+        logical :: failed
+
+        associate (eq => self%equations, before => self%first(slip), after => tried%last(slip))
+            call eq%inputs(t + tried%h, v_drive, pressure, pressure_rate)
+            call eq%surface%resistance_at(eq%law_state_of(tried%y, pressure), after, pressure, &
+                resistance, by_rate)
+            if (max(eq%mass, eq%damping * tried%h) < no_say * tried%h * by_rate * eq%area) then
+                tried%y(elastic) = eq%stiffness * tried%y(extension) / (eq%area * eq%alpha)
+                call eq%rates(t + tried%h, tried%y, tried%last, failed)
+                if (failed) tried%error = huge(tried%error)
+            else if (after > before) then
+                tried%error = max(tried%error, (log(after / max(before, tiny(before))) / most)**4)
+            end if
+        end associate
+    end subroutine balance
 
     !> What the damper takes of a block without mass, whose velocity is a small difference of
     !> forces: within a long step of Rodas4 it is not well enough known to be squared, its mean is.
@@ -649,7 +683,8 @@ contains
         end if
     end subroutine set_weights
 
-    !> Ends a step where its phase does, if it has ended.
+    !> Ends a step where its phase does, if it has ended. The error of a shorter step can be larger:
+    !> then it is not taken.
     subroutine locate(self, t, tried)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t                 !! [T]
@@ -682,6 +717,10 @@ contains
             again%h = middle
             call self%attempt(t, again)
             if (.not. again%error < huge(again%error)) exit
+            if (again%error > 1.0_dp) then
+                tried = again
+                return
+            end if
             g = self%equations%switch_values(t + middle, again%y, again%last)
             if (g(which) > 0.0_dp) then
                 high = middle
@@ -724,6 +763,7 @@ contains
             call self%attempt(t, again)
             if (.not. again%error < huge(again%error)) return
             tried = again
+            if (again%error > 1.0_dp) return
             g = self%equations%switch_values(t + again%h, again%y, again%last)
             if (g(which) > 0.0_dp .or. again%h >= latest) return
         end do
@@ -805,6 +845,8 @@ contains
                     self%y(elastic) = sign(min(strength, eq%surface%tau_max) / eq%alpha, eq%sense)
                 end if
                 eq%phase = phase_slide
+                if (eq%surface%traits%memory == 2 .and. eq%surface%traits%onset &
+                    == onset_yields) call slip_at_once(self, pressure, abs(self%y(elastic)))
             end if
         end associate
     end subroutine switch

@@ -179,7 +179,8 @@ contains
         dy(slip) = contact%slip
         dy(drive_work) = pull * v_drive
         dy(damped) = self%damping * contact%velocity**2
-        dy(dissipated) = abs(contact%traction) * contact%slip + self%damper * contact%elastic**2
+        dy(dissipated) = abs(contact%traction) * contact%slip
+        if (self%damper > 0.0_dp) dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
     end subroutine rates
 
     !> A contact on its spring. Without mass and damper, that and the drive spring are one.
