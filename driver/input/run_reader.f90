@@ -335,7 +335,7 @@ contains
         character(len=*), parameter :: group = 'friction', key = 'eta_t'
         type(facts) :: law
 
-        if (.not. allocated(run%props) .or. .not. run%adaptive) return
+        if (.not. (allocated(run%props) .and. allocated(run%drive%normal) .and. run%adaptive)) return
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
         if (run%newmark .or. .not. run%one_by_itself()) then
@@ -358,7 +358,8 @@ contains
         type(facts) :: law
         real(dp) :: falls
 
-        if (.not. allocated(run%props) .or. .not. run%adaptive .or. run%mass > 0.0_dp) return
+        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
+        if (.not. run%adaptive .or. run%mass > 0.0_dp) return
         law = friction_facts(run%props)
         if (run%newmark .or. law%damping > 0.0_dp) return
         falls = run%area * law%rate_weakening * run%drive%largest_normal()

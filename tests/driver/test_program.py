@@ -3,9 +3,11 @@
 STICKSLIP names the program.
 """
 import csv
+import itertools
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -364,6 +366,21 @@ class BadInput(Program):
     def test_missing_groups_and_keys(self):
         self.refused(namelist(without=[('drive', None), ('slider', 'mass')]),
                      'group &drive is missing', '&slider mass: is missing')
+
+    def test_whatever_parts_an_input_lacks_it_is_refused_in_words(self):
+        """Rules between groups are for groups that are there: adaptive steps of a block without mass, a damper, ..."""
+        adaptive = {('time', 'rtol'): '1e-4', ('slider', 'mass'): '0'}
+        others = namelist(adaptive, [('friction', None), ('time', 'dt')])
+        friction = len(namelist(without=[('friction', None)]))
+        texts = [path.read_text() for path in sorted(INPUTS.glob('*.nml')) if not path.name.startswith('fault')]
+        texts += [others + law_namelist(law, eta_t='1')[friction:] for law in LAWS]
+        for text in texts:
+            groups = re.findall(r'^&.*?/$', text, re.MULTILINE | re.DOTALL)
+            for count in range(len(groups)):
+                for part in itertools.combinations(groups, count):
+                    result = self.run_text('\n'.join(part) + '\n', verb='check')
+                    self.assertIn(result.returncode, (0, 2), f'{part}: {result.stderr}')
+                    self.assertEqual(result.returncode == 2, 'case.nml' in result.stderr, result.stderr)
 
     def test_empty_file(self):
         self.refused('', 'group &friction is missing', 'group &slider is missing',
