@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from ._records import Analysis, Falls, find_falls, smooth
+from ._records import Analysis, Falls, average, find_falls, smooth
 
 MOST_EVENTS = 30        # of a record that are followed one by one
 SKIPPED = 5             # events of a simulation before it has settled
@@ -23,7 +23,7 @@ FLOOR = 1e-3            # of an amplitude: errors of sampling and of the time in
 RIG = 0.1               # of the slope of the loading: what is known of stiffness, velocity and units of a scattered record
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Target:
     """The features of one record with their standard deviations, and how to take them from a simulation."""
 
@@ -36,12 +36,20 @@ class Target:
     first_load: float                    #: end of the first loading in the record [T]; 0: it has none
     near: float                          #: half width of the window around a drop [T]
     rig: float                           #: relative error of the slope of the loading that the rig's own numbers have
+    wander: np.ndarray                   #: noise that lasts from sample to sample; empty where samples vary by themselves
 
     def errors(self, floor: float = FLOOR) -> np.ndarray:
         """Standard deviations of the features, with a relative error of the model. The times of events are by far the
         sharpest of them and make the misfit's valleys narrow: a large error counts the more for them."""
         times = np.array(self.names) == 'event times'
         return np.hypot(self.noise, floor * self.scale * np.where(times, (floor / FLOOR)**0.9, 1.0))
+
+    def draw_noise(self, rng: np.random.Generator, size: int) -> np.ndarray:
+        """Noise like the record's."""
+        if self.wander.size == 0:
+            return rng.normal(scale=self.analysis.noise, size=size)
+        start = rng.integers(self.wander.size)
+        return rng.choice((-1.0, 1.0)) * np.resize(np.roll(self.wander, -start)[::rng.choice((-1, 1))], size)
 
     def of_simulation(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
         """The features of a simulation; None where it shows too few events."""
@@ -106,6 +114,17 @@ def medians(time: np.ndarray, force: np.ndarray, falls: Falls) -> tuple[np.ndarr
     return np.median(each, axis=0), each
 
 
+def rises(time: np.ndarray, force: np.ndarray, falls: Falls) -> np.ndarray:
+    """Slopes of straight lines through the middle half of each rise: with all its samples, less noisy than `medians` are."""
+    slopes = []
+    for begin, end in zip(falls.end[:-1], falls.onset[1:]):
+        inner = slice(*np.searchsorted(time, (0.75 * begin + 0.25 * end, 0.25 * begin + 0.75 * end)))
+        if inner.stop - inner.start > 2:
+            moment = time[inner] - time[inner].mean()
+            slopes.append(moment @ force[inner] / (moment @ moment))
+    return np.array(slopes)
+
+
 def make_target(analysis: Analysis, rig: float = RIG) -> Target:
     """What of this record is to be fitted. rig: part of the slope of a scattered record's loading that stiffness, velocity
     and units may be wrong by; 0 where one of them is found from it."""
@@ -115,14 +134,36 @@ def make_target(analysis: Analysis, rig: float = RIG) -> Target:
         values, each = medians(analysis.time, analysis.force, falls)
         errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
         unknown = np.where(np.array(MEDIANS) == 'slope', rig * np.abs(values), 0.0)
-        return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, unknown), np.abs(values), 0.0, near, rig)
+        return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, unknown), np.abs(values), 0.0, near, rig,
+                      np.empty(0))
     events = min(len(falls), MOST_EVENTS)
     first_load = 0.97 * falls.middle[0] if analysis.from_rest else 0.0
     blank = Target(analysis, events + (0 if analysis.from_rest else SKIPPED), (), np.empty(0), np.empty(0), np.empty(0),
-                   first_load, near, rig)
+                   first_load, near, rig, _wander(analysis))
     values = blank._repeating(analysis.time, analysis.force, falls.part(slice(None, events)))
     names, noise, scale = _errors(blank, events, values)
     return dataclasses.replace(blank, names=names, values=values, noise=noise, scale=scale)
+
+
+WANDERS = 1.5      # times what samples vary by themselves: cycles that differ by more have noise that lasts
+
+
+def _wander(analysis: Analysis) -> np.ndarray:
+    """What the force differs by from the mean cycle, sample after sample, if that is more than white noise makes, which is
+    all that neighbouring samples show: noise of a filter or of a surface, by which whole cycles differ."""
+    time, force, middle = analysis.time, analysis.force, analysis.falls.middle
+    places = np.arange(0, len(middle) - 1)[:, None] + BETWEEN
+    cycles = np.interp(np.interp(places, np.arange(len(middle)), middle), time, force)
+    mean = cycles.mean(axis=0)
+    left = np.sqrt(len(cycles) / (len(cycles) - 1.0))   # of a deviation from the mean, which has a part of it
+    if left * np.std(cycles - mean) < WANDERS * analysis.noise:
+        return np.empty(0)
+    phase = np.interp(time, middle, np.arange(len(middle)))
+    inner = (phase > 0.0) & (phase < len(middle) - 1.0) & (phase % 1.0 > BETWEEN[0]) & (phase % 1.0 < BETWEEN[-1])
+    deviation = force[inner] - np.interp(phase[inner] % 1.0, BETWEEN, mean)
+    span = slice(int(np.argmax(inner)), inner.size - int(np.argmax(inner[::-1])))
+    found = left * np.interp(time[span], time[inner], deviation)   # straight across the drops
+    return found - found.mean()
 
 
 def median_of_blocks(each: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -136,7 +177,8 @@ def median_of_blocks(each: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Names, errors by noise and scales of the features of a record whose events repeat."""
-    noise = target.analysis.noise
+    wander = target.wander
+    noise = float(np.std(wander)) if wander.size else target.analysis.noise
     times = len(_time_places(events, target.analysis.from_rest))
     around = values[times:times + NEAR.size]
     amplitude = np.ptp(around)
@@ -148,20 +190,21 @@ def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str,
              ('cycle', np.full(BETWEEN.size, level), np.full(BETWEEN.size, amplitude))]
     if target.first_load > 0.0:
         samples = max(1.0, target.first_load / (LOADING_BINS * target.analysis.step))
-        parts.append(('first loading', np.full(LOADING_BINS, noise / np.sqrt(samples)), np.full(LOADING_BINS, amplitude)))
+        of_means = np.std(average(wander, int(samples))) if wander.size else noise / np.sqrt(samples)
+        parts.append(('first loading', np.full(LOADING_BINS, of_means), np.full(LOADING_BINS, amplitude)))
     names = tuple(name for name, errors, _ in parts for _ in errors)
     return names, np.concatenate([errors for _, errors, _ in parts]), np.concatenate([scale for _, _, scale in parts])
 
 
-def outline(falls: Falls, first_load: float, scale: float) -> np.ndarray | None:
+def outline(falls: Falls, first_load: float, scale: float, period: float) -> np.ndarray | None:
     """A few numbers that change smoothly over the whole range of the constants, in units of a small change of each: for
-    the first, coarse search. Periods and durations count by their logarithms, forces by `scale`."""
+    the first, coarse search. Times count by the logarithms of their ratio to `period`, forces by `scale`."""
     if len(falls) < 3:
         return None
     late = falls.part(slice(1, None))
 
     def log(value: float) -> float:
-        return float(np.log(max(value, 1e-300)))
+        return float(np.log(max(value / period, 1e-300)))
 
     numbers = [log(np.median(np.diff(falls.middle))) / 0.01, np.median(late.peak) / (0.02 * scale),
                np.median(late.trough) / (0.02 * scale), log(np.median(late.end - late.onset)) / 0.05]

@@ -4,6 +4,7 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import hashlib
+import numbers
 import pathlib
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -12,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from . import _namelist
-from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians
+from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians, rises
+from ._namelist import InputError
 from ._records import LEAST_EVENTS, Analysis, Record, analyse
 from ._run import check_runs, spring_force
 from ._search import Constant, Journal, Limits, NoStickSlip, Problem, Simulate, along_valley, replicas, search, set_times
@@ -25,7 +27,7 @@ RIG_KEYS = {('drive', 'velocity'), ('slider', 'stiffness')}   # what the slope o
 RINGING_TIMES = 10.0    # least period without jumps of the response
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Fit:
     """What `fit` found."""
 
@@ -61,15 +63,18 @@ class Fit:
     def write_namelist(self, path: str | pathlib.Path, record: int = 0) -> None:
         """Writes an input that `stickslip run` takes as it stands: the model of one of the records."""
         found = ', '.join(f'{name} {self.values[name]:.5g}' for name in self.values)
-        text = (f'! Fitted to {", ".join(target.analysis.record.name for target in self._targets)}: {found}\n'
-                f'! Drive and end are those of {self._targets[record].analysis.record.name}.\n\n')
-        pathlib.Path(path).write_text(text + _namelist.written(self.settings(record)))
+        names = [' '.join(target.analysis.record.name.split()) for target in self._targets]   # in one line
+        text = (f'! Fitted to {", ".join(names)}: {found}\n'
+                f'! Drive and end are those of {names[record]}.\n\n')
+        pathlib.Path(path).write_text(text + _namelist.written(self.settings(record)), encoding='utf-8')
 
     def predict(self, record: Record) -> dict[str, dict[str, float]]:
         """Compares a record that need not have been fitted with the model: for the medians over the events of period,
         drop, peak and slope of the loading the measured one, its error (standard deviation, block bootstrap), the
         computed one, and its deviation (relative). The record's `settings` say what differs in the model."""
-        return compare(self._problem, self._candidate, analyse(record))
+        if not isinstance(record, Record):
+            raise TypeError('predict: record: an object of stickslip.Record is needed')
+        return compare(self._problem, self._candidate, analyse(record, _sense(_namelist.merge(self.model, record.settings))))
 
     def plot(self, path: str | pathlib.Path | None = None):
         """Draws record and model on one axis, cycles laid over one another, and what is left over; a row a record.
@@ -135,20 +140,17 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     if not all(isinstance(record, Record) for record in records):
         raise TypeError('fit: records: objects of stickslip.Record are needed')
     free = [free] if isinstance(free, str) else list(free)
-    if not all(isinstance(name, str) for name in free):
-        raise TypeError(f'fit: free = {free}: names are needed')
-    if len(set(free)) < len(free):
-        raise ValueError(f'fit: free = {free}: a name stands there twice')
+    _check_arguments(free, bounds, seed=seed, starts=starts, jobs=jobs)
     base = _namelist.groups_of(input)
     constants = [_constant(name, base, bounds) for name in free]
     if not constants:
-        raise ValueError('fit: no free constants')
+        raise InputError('fit: no free constants')
     for constant in constants:
         for record in records if constant.is_factor else ():
             if constant.key not in _namelist.merge(base, record.settings).get(constant.group, {}):
-                raise ValueError(f'fit: {constant.name}: {record.name} has no {constant.group}.{constant.key}')
+                raise InputError(f'fit: {constant.name}: {record.name} has no {constant.group}.{constant.key}')
     rig = 0.0 if any((constant.group, constant.key) in RIG_KEYS for constant in constants) else RIG
-    targets = tuple(make_target(analyse(record), rig) for record in records)
+    targets = tuple(make_target(analyse(record, _sense(_namelist.merge(base, record.settings))), rig) for record in records)
     size = sum(target.values.size for target in targets)
     if size < len(constants):
         raise ValueError(f'fit: {len(constants)} free constants, but the records give only {size} numbers, because their '
@@ -156,7 +158,7 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     for target in targets:
         _check_units(target, _namelist.merge(base, target.analysis.record.settings), constants)
     journal = Journal(checkpoint, _fingerprint(base, constants, targets, seed, starts))
-    with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         problem = Problem(base, constants, targets, _SIMULATE, pool, journal,
                           Limits(most_evaluations, most_seconds, _progress(progress)))
         try:
@@ -197,37 +199,65 @@ def _progress(wanted: bool | Callable[[str], None] | None) -> Callable[[str], No
 def _constant(name: str, base: dict, bounds: float | Mapping[str, tuple[float, float]]) -> Constant:
     """A free constant with its bounds."""
     if name == 'velocity_factor':
-        low, high = bounds.get(name, VELOCITY_FACTOR) if isinstance(bounds, Mapping) else VELOCITY_FACTOR
-        return Constant(name, 'drive', 'velocity', *_checked_bounds(name, low, high), is_factor=True)
+        own = bounds.get(name, VELOCITY_FACTOR) if isinstance(bounds, Mapping) else VELOCITY_FACTOR
+        return Constant(name, 'drive', 'velocity', *_checked_bounds(name, own), is_factor=True)
     group, _, key = name.lower().rpartition('.')
     group = group or 'friction'
     if isinstance(bounds, Mapping):
         if name not in bounds:
-            raise ValueError(f'fit: no bounds for {name}')
-        low, high = bounds[name]
-    else:
-        value = base.get(group, {}).get(key)
-        if not isinstance(value, (int, float)):
-            raise ValueError(f'fit: {name} has no value in the input that bounds could be taken about: give bounds by name')
-        factor = float(bounds)
-        if not factor > 1.0:
-            raise ValueError(f'fit: bounds = {factor:g}: a factor above 1 is needed')
-        low, high = value / factor, value * factor
-    return Constant(name, group, key, *_checked_bounds(name, low, high))
+            raise InputError(f'fit: no bounds for {name}')
+        return Constant(name, group, key, *_checked_bounds(name, bounds[name]))
+    value = base.get(group, {}).get(key)
+    if not _is_number(value):
+        raise InputError(f'fit: {name} has no value in the input that bounds could be taken about: give bounds by name')
+    if not _is_number(bounds) or not bounds > 1.0:
+        raise InputError(f'fit: bounds = {bounds!r}: a factor above 1 is needed, or lower and upper bounds by name')
+    return Constant(name, group, key, *_checked_bounds(name, (value / bounds, value * bounds)))
 
 
-def _checked_bounds(name: str, low: float, high: float) -> tuple[float, float]:
-    low, high = float(low), float(high)
+def _is_number(value: Any) -> bool:
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def _checked_bounds(name: str, bounds: Sequence[float]) -> tuple[float, float]:
+    try:
+        low, high = map(float, bounds)
+    except (TypeError, ValueError):
+        raise InputError(f'fit: bounds of {name}, {bounds!r}: a lower and an upper one are needed') from None
     if not 0.0 < low < high < np.inf:
-        raise ValueError(f'fit: bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
+        raise InputError(f'fit: bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
     return low, high
+
+
+def _check_arguments(free: Sequence[str], bounds: Any, **counts: int) -> None:
+    """Refuses names and counts that are none."""
+    if not all(isinstance(name, str) for name in free):
+        raise TypeError(f'fit: free = {free}: names are needed')
+    full = [name.lower() if '.' in name or name == 'velocity_factor' else f'friction.{name.lower()}' for name in free]
+    if len(set(full)) < len(full):
+        raise InputError(f'fit: free = {free}: a name stands there twice')
+    if isinstance(bounds, Mapping) and (others := [name for name in bounds if name not in free]):
+        raise InputError(f'fit: bounds of {", ".join(map(str, others))}, which free does not have')
+    for name, value in counts.items():
+        least = 0 if name == 'seed' else 1
+        if not isinstance(value, numbers.Integral) or isinstance(value, bool) or value < least:
+            raise InputError(f'fit: {name} = {value!r}: must be a whole number >= {least}')
+    if counts['starts'] & (counts['starts'] - 1):
+        raise InputError(f'fit: starts = {counts["starts"]}: must be a power of 2')
+
+
+def _sense(settings: Mapping[str, Any]) -> float:
+    """Which way the drive goes first: -1 backwards, else 1."""
+    velocity = settings.get('drive', {}).get('velocity', 1.0)
+    moves = [number for number in np.ravel(velocity) if _is_number(number) and number != 0.0]
+    return -1.0 if moves and moves[0] < 0.0 else 1.0
 
 
 def _fingerprint(base: dict, constants: Sequence[Constant], targets: Sequence[Target], seed: int, starts: int) -> str:
     digest = hashlib.sha256(repr((sorted(base.items(), key=str), constants, seed, starts)).encode())
     for target in targets:
-        digest.update(repr(target.analysis.record.settings).encode())
-        digest.update(target.analysis.force.tobytes())
+        digest.update(repr((target.analysis.record.settings, target.analysis.from_rest)).encode())
+        digest.update(target.analysis.time.tobytes() + target.analysis.force.tobytes())
     return digest.hexdigest()
 
 
@@ -247,21 +277,18 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     blind = np.linalg.norm(slope, axis=0) < 1e-6 * max(np.linalg.norm(slope, axis=0).max(), 1e-300)
     deviation = np.where(blind, np.inf, deviation)
     names = [constant.name for constant in problem.constants]
-    values = dict(zip(names, np.exp(candidate).tolist()))
+    values = dict(zip(names, problem.values(candidate).tolist()))
     with np.errstate(over='ignore', invalid='ignore'):
-        intervals = {name: (float(np.exp(x - NORMAL * s)), float(np.exp(x + NORMAL * s)))
-                     for name, x, s in zip(names, candidate, deviation)}
+        intervals = {name: (float(values[name] * np.exp(-NORMAL * s)), float(values[name] * np.exp(NORMAL * s)))
+                     for name, s in zip(names, deviation)}
         correlation = np.nan_to_num(covariance / np.outer(deviation, deviation))
     np.fill_diagonal(correlation, 1.0)
     undetermined = [name for name, s in zip(names, deviation) if not s <= UNDETERMINED]
     warnings = [warning for target in problem.targets for warning in target.analysis.warnings]
     warnings += [stopped] if stopped else []
     warnings += _remarks(problem, candidate, bent, misfit)
-    model = _namelist.merge(problem.base, {})
-    for constant, value in zip(problem.constants, np.exp(candidate)):
-        constant.set(model, value)
     return Fit(values, intervals, correlation, undetermined, _by_feature(problem.targets, misfit), warnings,
-               problem.limits.count, model, tuple(problem.targets), problem, candidate)
+               problem.limits.count, problem.settings(candidate), tuple(problem.targets), problem, candidate)
 
 
 def _floors(targets: Sequence[Target]) -> np.ndarray:
@@ -294,11 +321,11 @@ def _by_feature(targets: Sequence[Target], misfit: np.ndarray) -> dict[str, dict
 def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: np.ndarray) -> list[str]:
     """What a careful reader of the result should know."""
     remarks = []
-    for constant, x, bend in zip(problem.constants, candidate, bent):
+    for constant, x, high, bend in zip(problem.constants, candidate, problem.high, bent):
         if bend > 0.5:
             remarks.append(f'the response jumps, or bends sharply, within 1 % of {constant.name}: its interval is not to '
                            'be trusted')
-        if min(x - np.log(constant.low), np.log(constant.high) - x) < 1e-3:
+        if min(x, high - x) < 1e-3:
             remarks.append(f'{constant.name} ends at its bound: widen it, or question the model')
     first = 0
     for target in problem.targets:
@@ -314,13 +341,28 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
                                f'({ringing:.3g}): small changes of the constants can move the slider to another cycle')
         if target.analysis.scattered:
             remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
-        if np.sqrt(np.mean(part**2)) > 5.0:
-            told = compare(problem, candidate, target.analysis)
-            remarks.append(f'{name}: the model does not follow this record (misfit {np.sqrt(np.mean(part**2)):.2g} standard '
-                           f'deviations): its peaks are {told["peak"]["measured"]:.4g} and rise by {told["slope"]["measured"]:.4g} '
-                           f'per unit of time, the model\'s {told["peak"]["computed"]:.4g} and '
-                           f'{told["slope"]["computed"]:.4g}')
+        if target.wander.size:
+            remarks.append(f'{name}: from cycle to cycle the force differs by {np.std(target.wander):.3g}, from sample to sample '
+                           f'by {target.analysis.noise:.3g}: its noise lasts; errors are those of such noise')
+        remarks += _misfit_remarks(problem, candidate, target, part)
     return remarks
+
+
+def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, misfit: np.ndarray) -> list[str]:
+    """Does the model explain the record? misfit: of this record's features, in standard deviations."""
+    name, whole = target.analysis.record.name, np.sqrt(np.mean(misfit**2))
+    if whole > 5.0:
+        told = compare(problem, candidate, target.analysis)
+        return [f'{name}: the model does not follow this record (misfit {whole:.2g} standard deviations): its peaks are '
+                f'{told["peak"]["measured"]:.4g} and rise by {told["slope"]["measured"]:.4g} per unit of time, the model\'s '
+                f'{told["peak"]["computed"]:.4g} and {told["slope"]["computed"]:.4g}']
+    names = np.array(target.names)
+    parts = {feature: np.sqrt(np.mean(misfit[names == feature]**2)) for feature in dict.fromkeys(target.names)}
+    worst = max(parts, key=parts.get)
+    if whole > UNEXPLAINED or (parts[worst] > 1.5 * UNEXPLAINED and np.count_nonzero(names == worst) > 1):
+        return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '
+                'does not follow all of this record; the intervals are the wider for it']
+    return []
 
 
 def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) -> None:
@@ -347,6 +389,7 @@ def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) 
             'units of time or force (time_factor, force_factor), the stiffness or the velocity are not those of the record')
 
 
+UNEXPLAINED = 2.0    # standard deviations left over
 WRONG_UNITS = 5.0    # times faster, or slower, than the rig's numbers say
 
 
@@ -356,10 +399,17 @@ def _rig_remarks(target: Target, slider: dict, drive: dict) -> list[str]:
     analysis = target.analysis
     if not isinstance(stiffness, (int, float)) or not isinstance(velocity, (int, float)) or len(analysis.falls) < LEAST_EVENTS:
         return []
-    (*_, slope), each = medians(analysis.time, analysis.force, analysis.falls)
-    error = np.std([median_of_blocks(each, rng)[-1] for rng in np.random.default_rng(0).spawn(50)])
+    each = rises(analysis.time, analysis.force, analysis.falls)
+    if each.size < LEAST_EVENTS - 1:
+        return []
+    slope = float(np.median(each))
+    error = np.std([median_of_blocks(each[:, None], rng) for rng in np.random.default_rng(0).spawn(50)])
+    # Noise of a straight line through the middle half of a rise, and of the median of such slopes: few events may scatter
+    # less by chance.
+    half = 0.5 * float(np.median(analysis.falls.onset[1:] - analysis.falls.end[:-1]))
+    by_noise = 1.25 * analysis.noise / half * np.sqrt(12.0 * analysis.step / half / len(each))
     expected = stiffness * abs(velocity)
-    if slope - expected < max(0.03 * expected, 2.0 * error):
+    if slope - expected < max(0.03 * expected, 3.0 * max(error, by_noise)):
         return []
     return [f'{analysis.record.name}: between events the force rises by {slope:.4g} per unit of time, faster than stiffness '
             f'times velocity, {expected:.4g}: units are wrong, or the record was taken with a velocity of '

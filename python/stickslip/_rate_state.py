@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import numbers
 import pathlib
 from collections.abc import Mapping, Sequence
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._optional import needed
-from ._run import spring_force
+from ._run import series
 from .laws import RateAndState
 
 NAMES = ('a', 'b', 'd_c', 'stiffness')
@@ -19,11 +20,10 @@ STEP = 0.01           # of the constants' logarithms, for central differences
 FRICTION = 0.6        # of steady sliding in the model; the level of the record is found apart from it
 REST = 1e-6           # of the largest velocity: below it the drive stands still
 RTOL = 1e-6           # error in a step, part of the friction
-ROWS = 5000           # of a run
-RIGID = 300.0         # contact springs in a drive spring
+MOST_LAGS = 1000      # samples over which what is left over is looked at for lasting
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class RateStateFit:
     """What `fit_rate_and_state` found; lengths and times in the units of the record."""
 
@@ -89,9 +89,11 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: Sequenc
     least_squares, qmc = needed('scipy.optimize', 'fit').least_squares, needed('scipy.stats', 'fit').qmc
 
     record = _prepare(time, friction, changes, displacement, velocity)
-    limits = {**record.default_bounds(), **(bounds or {})}
-    if unknown := set(limits) - set(NAMES):
-        raise ValueError(f'fit_rate_and_state: no constants {", ".join(sorted(unknown))}; there are {", ".join(NAMES)}')
+    limits = _limits(record, bounds or {})
+    if evolution not in EVOLUTIONS:
+        raise ValueError(f'evolution = {evolution!r}: one of {", ".join(EVOLUTIONS)}')
+    if not isinstance(starts, numbers.Integral) or starts < 1 or starts & (starts - 1):
+        raise ValueError(f'starts = {starts!r}: must be a power of 2')
     low, high = np.log([limits[name] for name in NAMES]).T
     known: dict[bytes, np.ndarray] = {}
 
@@ -111,7 +113,29 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: Sequenc
         found = least_squares(misfit, point, jacobian, bounds=(low, high), x_scale=0.3, max_nfev=40)
         if best is None or found.cost < best.cost:
             best = found
+    if record.model(np.exp(best.x), evolution) is None:
+        raise ValueError('no constants within the bounds give a run that ends: where the spring is softer than friction weakens, '
+                         'sliding without mass is unstable; give other bounds')
     return _assess(record, best.x, misfit(best.x), jacobian(best.x), limits, evolution)
+
+
+EVOLUTIONS = ('ageing', 'slip')
+
+
+def _limits(record: _Steps, given: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Bounds of all constants: those given, the others from the record."""
+    if unknown := set(given) - set(NAMES):
+        raise ValueError(f'fit_rate_and_state: no constants {", ".join(sorted(unknown))}; there are {", ".join(NAMES)}')
+    limits = record.default_bounds()
+    for name, bounds in given.items():
+        try:
+            low, high = map(float, bounds)
+        except (TypeError, ValueError):
+            raise ValueError(f'bounds of {name}, {bounds!r}: a lower and an upper one are needed') from None
+        if not 0.0 < low < high < np.inf:
+            raise ValueError(f'bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
+        limits[name] = low, high
+    return limits
 
 
 @dataclasses.dataclass(frozen=True)
@@ -123,30 +147,33 @@ class _Steps:
     changes: np.ndarray     #: [T]
     velocity: np.ndarray    #: of each piece [L/T]
     noise: np.ndarray       #: of each sample
+    sense: float = 1.0      #: -1 where the drive goes backwards: friction and velocity are those of the mirrored rig
 
     def default_bounds(self) -> dict[str, tuple[float, float]]:
         """For the constants that the caller has no bounds for."""
         speed = self.velocity.max()
-        shortest = speed * float(np.median(np.diff(self.time)))
+        shortest = speed * float(np.diff(self.time).min())   # samples may be denser around the changes
         longest = speed * (self.time[-1] - self.time[0]) / 5.0
-        return {'a': (1e-4, 0.1), 'b': (1e-4, 0.1), 'd_c': (shortest, longest), 'stiffness': (0.01 / longest, 0.1 / shortest)}
+        return {'a': (1e-4, 0.1), 'b': (1e-4, 0.1), 'd_c': (shortest, longest), 'stiffness': (0.01 / longest, 1.0 / shortest)}
 
     def model(self, constants: np.ndarray, evolution: str) -> np.ndarray | None:
         """Friction of the model at the record's times, but for level and trend; None where its run fails."""
         a, b, d_c, stiffness = map(float, constants)
         first = float(self.velocity[0])
         ends = np.append(self.changes, self.time[-1]) - self.time[0]
-        end = float(ends[-1])
-        result = spring_force({
-            'friction': {'law': 'rate_and_state', 'alpha_n': 1.0, 'alpha_t': RIGID * stiffness, 'a': a, 'b': b, 'd_c': d_c,
+        found = series({
+            'friction': {'law': 'rate_and_state', 'contact': 'rigid', 'alpha_n': 1.0, 'alpha_t': 1.0, 'a': a, 'b': b, 'd_c': d_c,
                          'v0': first, 'f0': FRICTION, 'evolution': evolution},
             'slider': {'mass': 0.0, 'stiffness': stiffness, 'area': 1.0, 'normal_traction': 1.0},
             'initial': {'mu': FRICTION},   # steady sliding: theta_0 is that of v0
-            'drive': {'velocity': list(self.velocity), 'duration': list(np.diff(np.append(0.0, ends)))},
-            'time': {'t_end': end, 'rtol': RTOL}, 'output': {'every': end / ROWS}})
-        if result is None:
+            'drive': {'velocity': self.velocity, 'duration': np.diff(np.append(0.0, ends))},
+            'time': {'t_end': float(ends[-1]), 'rtol': RTOL}}, 'time', 'spring_force', 'velocity')
+        if found is None:
             return None
-        return np.interp(self.time - self.time[0], *result)
+        rows, force, velocity = found
+        drive = self.velocity[np.searchsorted(ends[:-1], 0.5 * (rows[1:] + rows[:-1]))]   # between rows
+        return _between(self.time - self.time[0], rows, force, stiffness * (drive - velocity[:-1]),
+                        stiffness * (drive - velocity[1:]))
 
     def with_trend(self, model: np.ndarray) -> np.ndarray:
         """The model on the level of the record, and with its straight trend."""
@@ -161,6 +188,15 @@ class _Steps:
         if model is None or not np.isfinite(model).all():
             return np.full(self.time.size, 100.0)
         return (self.with_trend(model) - self.friction) / self.noise
+
+
+def _between(time: np.ndarray, rows: np.ndarray, force: np.ndarray, after: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """The force at any time, from that in the rows of a run and its rates after each row and before the next one."""
+    i = np.clip(np.searchsorted(rows, time, side='right') - 1, 0, rows.size - 2)
+    length = np.diff(rows)[i]
+    s = (time - rows[i]) / length
+    return (force[i] * (1.0 + 2.0 * s) * (1.0 - s)**2 + force[i + 1] * s**2 * (3.0 - 2.0 * s)
+            + length * s * (1.0 - s) * (after[i] * (1.0 - s) - before[i] * s))
 
 
 def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], displacement: ArrayLike | None,
@@ -179,12 +215,21 @@ def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], dis
         raise ValueError('either displacement or velocity is needed')
     edges = np.concatenate([[time[0]], changes, [time[-1]]])
     if displacement is not None:
-        changes, velocity = _lines(time, np.asarray(displacement, float).ravel(), edges)
+        displacement = np.asarray(displacement, float).ravel()
+        if displacement.size != time.size:
+            raise ValueError(f'{displacement.size} displacements for {time.size} times: as many are needed')
+        if not np.isfinite(displacement).all():
+            raise ValueError('the displacement holds what is not a finite number')
+        changes, velocity = _lines(time, displacement, edges)
     velocity = np.asarray(velocity, float)
     if velocity.size != changes.size + 1:
         raise ValueError(f'{velocity.size} velocities for {changes.size} changes: {changes.size + 1} are needed')
-    if velocity.max() <= 0.0 or velocity.min() < 0.0 or velocity[0] <= 0.0:
-        raise ValueError(f'velocities {velocity.tolist()}: the first above 0, none below')
+    sense = 1.0
+    if np.all(velocity <= 0.0):   # mirrored; the force may have either sign
+        sense = float(np.sign(np.median(friction))) or 1.0
+        velocity, friction = -velocity, sense * friction
+    if not (np.isfinite(velocity).all() and velocity.min() >= 0.0 and velocity[0] > 0.0):
+        raise ValueError(f'velocities {velocity.tolist()}: the first must not be 0, and all must go one way')
     noise = np.empty_like(time)
     for begin, end in zip(edges[:-1], edges[1:]):
         part = (time >= begin) & (time <= end)
@@ -193,7 +238,7 @@ def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], dis
         second = np.diff(friction[part], 2)
         noise[part] = max(float(np.subtract(*np.percentile(second, [75, 25]))) / 1.349 / np.sqrt(6.0),
                           1e-6 * np.ptp(friction))
-    return _Steps(time, friction, changes, velocity, noise)
+    return _Steps(time, friction, changes, velocity, noise, sense)
 
 
 def _lines(time: np.ndarray, displacement: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -218,17 +263,34 @@ def _assess(record: _Steps, at: np.ndarray, misfit: np.ndarray, slope: np.ndarra
     inverse = np.linalg.pinv(slope.T @ slope, rcond=1e-12)
     blocks = np.array_split(np.arange(misfit.size), max(10, round(np.sqrt(misfit.size))))
     pulls = np.array([slope[block].T @ misfit[block] for block in blocks])
-    covariance = inverse @ (pulls.T @ pulls) @ inverse
-    covariance = np.maximum(1.0, np.diag(inverse) / np.maximum(np.diag(covariance), 1e-300)).max() * covariance
-    deviation = np.sqrt(np.diag(covariance))
-    intervals = {name: (float(np.exp(x - NORMAL * s)), float(np.exp(x + NORMAL * s)))
-                 for name, x, s in zip(NAMES, at, deviation)}
+    covariance = inverse @ _lasting(slope, misfit) @ inverse
+    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    deviation = np.sqrt(np.max([spread**2, np.diag(inverse), np.diag(inverse @ (pulls.T @ pulls) @ inverse)], axis=0))
+    covariance *= np.outer(deviation / spread, deviation / spread)
+    with np.errstate(over='ignore'):   # of what is not determined at all
+        intervals = {name: (float(np.exp(x - NORMAL * s)), float(np.exp(x + NORMAL * s)))
+                     for name, x, s in zip(NAMES, at, deviation)}
     warnings = [f'{name} ends at its bound' for name, x in zip(NAMES, at)
                 if min(x - np.log(limits[name][0]), np.log(limits[name][1]) - x) < 1e-3]
     rms = float(np.sqrt(np.mean(misfit**2)))
     if rms > 2.0:
-        warnings.append(f'what is left over is {rms:.2g} times the noise: the law does not explain all of it')
-    model = record.with_trend(record.model(np.exp(at), evolution))
+        warnings.append(f'what is left over is {rms:.2g} times the noise from sample to sample: the law does not explain all of '
+                        'it, or the noise lasts')
+    model = record.sense * record.with_trend(record.model(np.exp(at), evolution))
     return RateStateFit(dict(zip(NAMES, np.exp(at).tolist())), intervals, covariance / np.outer(deviation, deviation),
                         [name for name, s in zip(NAMES, deviation) if not s <= UNDETERMINED], warnings, rms,
-                        record.time, record.friction, model)
+                        record.time, record.sense * record.friction, model)
+
+
+def _lasting(slope: np.ndarray, misfit: np.ndarray) -> np.ndarray:
+    """Covariance of slope.T @ misfit, for a misfit that lasts from sample to sample in the same way all along: the few samples
+    that tell a constant say little about that themselves."""
+    rest = misfit - misfit.mean()
+    total = (rest @ rest) / rest.size * (slope.T @ slope)
+    for lag in range(1, min(MOST_LAGS, rest.size // 4)):
+        together = (rest[:-lag] @ rest[lag:]) / rest.size
+        if together <= 0.0:
+            break
+        cross = slope[:-lag].T @ slope[lag:]
+        total += together * (cross + cross.T)
+    return total

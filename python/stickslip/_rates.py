@@ -1,6 +1,7 @@
 """Friction in continuous time: rates of a state, slip rates without a contact spring (docs/python.md)."""
 from __future__ import annotations
 
+import ctypes
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _library
 from ._update import STATE_SIZE
-from .laws import AtPoints, Law
+from .laws import AtPoints, Law, require_law
 
 
 LEAST_PROPS = 8   # that the library's slip rates ask for
@@ -39,6 +40,7 @@ def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
 
     A bad state or velocity is a negative status of that point; wrong shapes are a ValueError.
     """
+    require_law(law, own=False)
     velocity = np.ascontiguousarray(velocity, np.float64)
     state = np.ascontiguousarray(state, np.float64)
     if velocity.ndim not in (1, 2) or velocity.shape[-1] not in (2, 3):
@@ -68,7 +70,9 @@ def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: 
     their shape is (n,). Bad input at a point is a negative status there and harms no other. Releases the interpreter's
     lock; more than 2000 points are shared out among OpenMP's threads.
     """
+    require_law(law, own=True)
     own = isinstance(law, AtPoints)
+    damping = ctypes.c_double(damping)
     shape = np.broadcast_shapes(*map(np.shape, (tau, pressure, theta)), (len(law),) if own else ())
     tau, pressure, theta = (np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float64), shape))
                             for values in (tau, pressure, theta))

@@ -4,18 +4,22 @@ from __future__ import annotations
 import csv
 import dataclasses
 import pathlib
+import re
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from . import _namelist
 from ._optional import needed
+from ._text import decoded
 
 
 class RecordError(ValueError):
     """A record that cannot be fitted; the text says why, where, and what to do."""
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Record:
     """A measured force of the drive spring.
 
@@ -33,22 +37,11 @@ class Record:
 
     def __post_init__(self) -> None:
         for name in ('time', 'force'):
-            object.__setattr__(self, name, self._numbers(name))
+            object.__setattr__(self, name, _numbers(getattr(self, name), f'{self.name}: {name}'))
+        if not isinstance(self.settings, Mapping):
+            raise TypeError(f'{self.name}: settings: a dict of groups is needed, not {self.settings!r}')
+        object.__setattr__(self, 'settings', _namelist.groups_of(self.settings))
         self._check()
-
-    def _numbers(self, name: str) -> np.ndarray:
-        """The time or the force as an array of one dimension."""
-        values = np.asarray(getattr(self, name))
-        if values.dtype.kind == 'c':
-            self.refuse(f'{name}: numbers are needed, not complex ones')
-        if values.dtype.kind not in 'fiu':
-            try:
-                values = np.array([float(value) for value in values.ravel()])
-            except (TypeError, ValueError) as error:
-                self.refuse(f'{name}: numbers are needed ({error})')
-        if max(values.shape, default=0) != values.size:
-            self.refuse(f'{name} has the shape {values.shape}: one number a sample is needed')
-        return np.asarray(values, float).ravel()
 
     @classmethod
     def read(cls, path: str | pathlib.Path, *, time: str = 'time', force: str = 'spring_force', time_factor: float = 1.0,
@@ -57,20 +50,24 @@ class Record:
              from_rest: bool | None = None) -> Record:
         """Reads a record from a table (CSV or other separated text with a header), or from a MATLAB file (.mat).
 
-        time, force: names of the columns; time_factor, force_factor: multiply what is read, for other units;
-        force_offset: added to the force afterwards [F]; start, end: the part of the record to take, in its own time
-        [T]; the rest as for `Record`.
+        time, force: names of the columns, as they are written, or without regard to case or to a unit behind them, if no
+        other column could be meant; time_factor, force_factor: multiply what is read, for other units; force_offset: added
+        to the force afterwards [F]; start, end: the part of the record to take, in its own time [T]; the rest as for
+        `Record`.
         """
         path = pathlib.Path(path)
-        columns = _read_columns(path, (time, force))
-        moment = columns[0] * time_factor
-        pull = columns[1] * force_factor + force_offset
-        keep = np.ones(moment.size, bool)
-        if start is not None:
-            keep &= ~(moment < start)
-        if end is not None:
-            keep &= ~(moment > end)
-        return cls(moment[keep], pull[keep], settings or {}, name or path.stem, from_rest)
+        _check_numbers(path, time_factor=time_factor, force_factor=force_factor, force_offset=force_offset, start=start, end=end)
+        moment, pull = (_numbers(values, f'{path}: {column!r}')
+                        for column, values in zip((time, force), _read_columns(path, (time, force))))
+        moment, pull = moment * time_factor, pull * force_factor + force_offset
+        if moment.size == pull.size:   # else the record says so
+            keep = np.ones(moment.size, bool)
+            if start is not None:
+                keep &= ~(moment < start)
+            if end is not None:
+                keep &= ~(moment > end)
+            moment, pull = moment[keep], pull[keep]
+        return cls(moment, pull, settings or {}, name or path.stem, from_rest)
 
     def refuse(self, why: str) -> None:
         """Raises RecordError."""
@@ -91,33 +88,82 @@ class Record:
             self.refuse(f'time does not increase from {t[i]:g} to {t[i + 1]:g} (sample {i + 2})')
 
 
-def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
-    """Columns of a file, by name."""
-    if path.suffix == '.mat':
-        return _matlab_columns(path, names)
-    lines = _text(path).splitlines()
-    separator, first, places = _header(path, lines, names)
-    columns: list[list[float]] = [[] for _ in names]
-    for number, line in enumerate(lines[first:], first + 1):
-        if not line.strip() or line.lstrip().startswith('#'):
-            continue
-        cells = _cells(line, separator)
+def _numbers(values: Any, what: str) -> np.ndarray:
+    """A time or a force as an array of its own, of one dimension; what is masked is NaN."""
+    values = values.astype(float).filled(np.nan) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    if values.dtype.kind == 'c':
+        raise RecordError(f'{what}: numbers are needed, not complex ones')
+    if values.dtype.kind in 'mM':
+        raise RecordError(f'{what}: numbers are needed, not dates: (t - t[0]) / numpy.timedelta64(1, "s") are seconds')
+    if values.dtype.kind not in 'fiu':
         try:
-            values = [_number(cells[place], separator) for place in places]
-        except (IndexError, ValueError):
-            if number == first + 1:
-                continue   # units
-            raise RecordError(f'{path}, line {number}: {line.strip()[:60]!r} has no number for each of '
-                              + ', '.join(names)) from None
-        for column, value in zip(columns, values):
-            column.append(value)
+            values = np.array([float(value) for value in values.ravel()]).reshape(values.shape)
+        except (TypeError, ValueError) as error:
+            raise RecordError(f'{what}: numbers are needed ({error})') from None
+    if max(values.shape, default=0) != values.size:
+        raise RecordError(f'{what} has the shape {values.shape}: one number a sample is needed')
+    return np.array(values, float).ravel()
+
+
+def _check_numbers(path: pathlib.Path, **given: float | None) -> None:
+    """Refuses factors, and ends of a part, that make no record."""
+    for name, value in given.items():
+        if value is not None and (isinstance(value, str) or not np.isfinite(value)):
+            raise RecordError(f'{path}: {name} = {value!r}: must be a finite number')
+    if not given['time_factor'] > 0.0:
+        raise RecordError(f'{path}: time_factor = {given["time_factor"]}: must be > 0')
+    if given['force_factor'] == 0.0:
+        raise RecordError(f'{path}: force_factor = 0: must not be 0')
+    if None not in (given['start'], given['end']) and not given['start'] < given['end']:
+        raise RecordError(f'{path}: start = {given["start"]:g}, end = {given["end"]:g}: start must be below end')
+
+
+def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
+    """Columns of a file, by name, under the rules that the program has for tables."""
+    if path.suffix.lower() == '.mat':
+        return _matlab_columns(path, names)
+    try:
+        lines = _lines(path)
+        separator, first, places = _header(path, lines, names)
+        columns: list[list[float]] = [[] for _ in names]
+        words = 0
+        for number, line in enumerate(lines[first:], first + 1):
+            if not line.strip() or _is_comment(line):
+                continue
+            cells = _cells(line, separator)
+            try:
+                values = [_number(cells[place]) for place in places]
+            except (IndexError, ValueError):
+                words += 1
+                if words <= WORD_ROWS and not columns[0] and not any(map(_like_number, cells)):
+                    continue   # units
+                raise RecordError(f'{path}, line {number}: {line.strip()[:60]!r} has no number for each of '
+                                  + ', '.join(names)) from None
+            for column, value in zip(columns, values):
+                column.append(value)
+    except csv.Error as error:
+        raise RecordError(f'{path}: not a table that can be read ({error})') from None
     return [np.array(column) for column in columns]
+
+
+def _lines(path: pathlib.Path) -> list[str]:
+    try:
+        return decoded(path.read_bytes()).splitlines()
+    except ValueError as error:
+        raise RecordError(f'{path}, {error}') from None
+
+
+WORD_ROWS = 2   # of units or the like, behind the names of the columns
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(('#', '%'))
 
 
 def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
     io = needed('scipy.io', 'fit')
     try:
-        table = io.loadmat(path)
+        table = io.loadmat(path, appendmat=False)
     except (io.matlab.MatReadError, NotImplementedError, ValueError, TypeError) as error:
         raise RecordError(f'{path}: not a MATLAB file that can be read ({error})') from None
     for name in names:
@@ -127,30 +173,43 @@ def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarr
     return [table[name] for name in names]
 
 
-def _text(path: pathlib.Path) -> str:
-    """The text of a file, whatever wrote it."""
-    content = path.read_bytes()
-    if content.startswith((b'\xff\xfe', b'\xfe\xff')):
-        return content.decode('utf-16', 'replace')
-    try:
-        return content.decode('utf-8-sig')
-    except UnicodeDecodeError:
-        return content.decode('latin-1')
-
-
 def _header(path: pathlib.Path, lines: list[str], names: tuple[str, ...]) -> tuple[str | None, int, list[int]]:
-    """What separates columns (None: spaces), the first line after their names, and their places."""
-    for number, line in enumerate(lines[:1000]):
+    """What separates columns (None: spaces), the first line after their names, and their places. A comment holds the names
+    only where no other line does."""
+    head = list(enumerate(lines[:1000], 1))
+    for number, line in [item for item in head if not _is_comment(item[1])] + [item for item in head if _is_comment(item[1])]:
         for separator in (';', '\t', ',', None):
-            cells = _cells(line.lstrip('#'), separator)
-            if all(name in cells for name in names):
-                return separator, number + 1, [cells.index(name) for name in names]
+            titles = _cells(line.lstrip().lstrip('#%'), separator)
+            found = [_places(name, titles) for name in names]
+            if all(found):
+                for name, places in zip(names, found):
+                    if len(places) > 1:
+                        both = ' and '.join(repr(titles[place]) for place in places[:2])
+                        raise RecordError(f'{path}, line {number}: columns {both} may both be {name!r}: name one as it is '
+                                          'written, and each only once')
+                return separator, number, [places[0] for places in found]
     first = next((line for line in lines if line.strip()), '')
     if not first:
         raise RecordError(f'{path}: the file is empty')
     separator = next((separator for separator in (';', '\t', ',') if separator in first), None)
-    missing = next(name for name in names if name not in _cells(first, separator))
-    raise RecordError(f'{path}: no column {missing!r}; there are ' + ', '.join(_cells(first, separator)[:20]))
+    titles = _cells(first, separator)
+    missing = next((name for name in names if not _places(name, titles)), names[0])
+    raise RecordError(f'{path}: no column {missing!r}; there are ' + ', '.join(titles[:20]))
+
+
+def _places(name: str, titles: list[str]) -> list[int]:
+    """The columns that have a name: as it is written if there is one, else without regard to case, else without a unit."""
+    for strictness in range(3):
+        wanted = _simplified(name, strictness)
+        if places := [place for place, title in enumerate(titles) if title and _simplified(title, strictness) == wanted]:
+            return places
+    return []
+
+
+def _simplified(title: str, strictness: int) -> str:
+    """A name, without its case (1), or without its unit either (2): `Time [s]`, `time (s)`, `Time/s`."""
+    name = title.lower() if strictness > 0 else title
+    return re.split(r'(?<=.)[\[({/,]', name, maxsplit=1)[0].strip() if strictness > 1 else name
 
 
 def _cells(line: str, separator: str | None) -> list[str]:
@@ -160,14 +219,21 @@ def _cells(line: str, separator: str | None) -> list[str]:
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
 
 
-def _number(cell: str, separator: str | None) -> float:
+def _like_number(cell: str) -> bool:
+    """Is this no unit, nor another word? A number that is badly written counts."""
+    return cell[:1] in set('0123456789+-.,\u2212') and any(map(str.isdigit, cell)) or cell.lower() in ('nan', 'inf', 'infinity')
+
+
+def _number(cell: str) -> float:
     """A number, also with a decimal comma; NaN for an empty cell."""
+    if not cell.isascii() or '_' in cell:   # which float would take
+        raise ValueError(cell)
     if ',' in cell and '.' not in cell:
         cell = cell.replace(',', '.')
     return float(cell) if cell else float('nan')
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Falls:
     """Falls of a force: the slip events of a record or of a model, in their order."""
 
@@ -232,7 +298,7 @@ def find_falls(time: np.ndarray, force: np.ndarray, threshold: float) -> Falls:
     return Falls(time[peaks], time[troughs], middle, force[peaks], force[troughs])
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Analysis:
     """A record made ready: from time 0, evenly sampled, with its events."""
 
@@ -247,15 +313,26 @@ class Analysis:
     from_rest: bool
     scattered: bool        #: do period or drop vary from event to event by more than a tenth?
     warnings: tuple[str, ...]
+    sense: float           #: -1 where the drive goes backwards: forces here are those of the mirrored rig
 
     @property
     def step(self) -> float:
         """Time between samples [T]."""
         return self.time[1] - self.time[0]
 
+    @property
+    def row_step(self) -> float:
+        """Time between rows of a simulation that is to be sampled like the record [T]."""
+        return self.step / self.averaged / (FINER if _uneven(self.record.time) else 1)
+
     def like(self, time: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Another force against time, sampled and averaged as the record is."""
         fine = np.arange(0.0, time[-1], self.step / self.averaged)
+        own = self.record.time - self.record.time[0]
+        if _uneven(own):   # sparse samples cut peaks off: again and again, if need be, as the record has them
+            length = own[-1] + self.step
+            own = np.concatenate([own + k * length for k in range(int(time[-1] / length) + 1)])
+            time, force = own, np.interp(own, time, force)
         return average(fine, self.averaged), average(np.interp(fine, time, force), self.averaged)
 
     @property
@@ -270,12 +347,16 @@ class Analysis:
 
 
 LEAST_EVENTS = 5
+FINER = 4               # rows of a simulation in a step of a record whose samples lie between rows
 SAMPLES_A_PERIOD = 200
 SAMPLES_A_FALL = 10
 
 
-def analyse(record: Record) -> Analysis:
-    """Finds the events of a record, or refuses it in words."""
+def analyse(record: Record, sense: float = 1.0) -> Analysis:
+    """Finds the events of a record, or refuses it in words. sense: -1 where the drive goes backwards; the force may then be
+    given with the sign that the program has for it, or as for a drive that goes forwards."""
+    if sense < 0.0 and np.median(record.force) < 0.0:
+        record = dataclasses.replace(record, force=-record.force)
     time, force, noise = _even(record)
     if np.median(force) < 0.0 and np.median(force) < -3.0 * noise:
         record.refuse('the force is negative: it acts against the drive. Turn its sign (force_factor=-1), or the '
@@ -301,12 +382,20 @@ def analyse(record: Record) -> Analysis:
     drops = falls.peak - falls.trough
     # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
     scattered = max(_spread(gaps) / np.median(gaps), _spread(drops[1:]) / np.median(drops)) > 0.1
-    return Analysis(record, time, force, coarser, noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings))
+    return Analysis(record, time, force, coarser, noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings),
+                    sense)
 
 
 def _spread(values: np.ndarray) -> float:
     """Standard deviation of normally distributed values, from their quartiles."""
     return float(np.subtract(*np.percentile(values, [75, 25])) / 1.349)
+
+
+def _uneven(time: np.ndarray) -> bool:
+    """Are samples not taken at even times?"""
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    return bool(np.abs(steps - step).max() > 1e-3 * step)
 
 
 def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
@@ -315,18 +404,22 @@ def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
     step = float(np.median(steps))
     time = record.time - record.time[0]
     force = record.force
-    if np.abs(steps - step).max() > 1e-3 * step:
+    # From the straight line between its neighbours a sample differs by noise: neither the level nor the slope of the force
+    # counts. Where most do not differ, the force is known in steps, or rests.
+    before = steps[1:] / (steps[:-1] + steps[1:])   # weight of the neighbour before
+    apart = (force[1:-1] - before * force[:-2] - (1.0 - before) * force[2:]) / np.sqrt(1.0 + before**2 + (1.0 - before)**2)
+    noise = _spread(apart)
+    if noise == 0.0 and np.count_nonzero(apart) > 3:
+        noise = _spread(apart[apart != 0.0])
+    if _uneven(record.time):
         even = np.arange(0.0, time[-1], step)
+        # Where samples are sparse, several even ones have the noise of one, and means of them more than so many would.
+        apart = 0.5 * (steps[:-1] + steps[1:])
+        noise *= np.sqrt(np.sum(apart * np.maximum(apart, step)) / (step * apart.sum()))
         time, force = even, np.interp(even, time, force)
     else:
         time = step * np.arange(time.size)
-    # Second differences see neither the level nor the slope of the force. Where most of them are 0, the force is known in
-    # steps, or rests.
-    second = np.diff(force, 2)
-    noise = _spread(second)
-    if noise == 0.0 and np.count_nonzero(second) > 3:
-        noise = _spread(second[second != 0.0])
-    return time, force, noise / np.sqrt(6.0)
+    return time, force, noise
 
 
 def _events(record: Record, time: np.ndarray, force: np.ndarray, noise: float) -> tuple[int, float, Falls]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _namelist, _program
+from ._namelist import InputError
 from ._optional import needed
 
 if TYPE_CHECKING:
@@ -16,19 +17,18 @@ if TYPE_CHECKING:
     import pandas
 
 
-class InputError(ValueError):
-    """An input that breaks rules; the text lists every fault with its line, group, key, value and rule."""
-
-
 class RunError(RuntimeError):
     """A run that ended before its time; `run` holds what was computed before."""
 
     def __init__(self, why: str, run: Run) -> None:
-        super().__init__(why)
+        super().__init__(why, run)
         self.run = run
 
+    def __str__(self) -> str:
+        return self.args[0]
 
-@dataclasses.dataclass(frozen=True)
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Run:
     """What a run found: the columns of the program's files (docs/driver.md)."""
 
@@ -101,8 +101,13 @@ def check_runs(settings: dict[str, dict[str, Any]]) -> None:
 def spring_force(settings: dict[str, dict[str, Any]]) -> tuple[np.ndarray, np.ndarray] | None:
     """Time and spring force of a run on groups of keys; None where it fails, or where its constants are not valid
     together, as candidates of a search may be."""
+    return series(settings, 'time', 'spring_force')
+
+
+def series(settings: dict[str, dict[str, Any]], *columns: str) -> tuple[np.ndarray, ...] | None:
+    """Columns of the time series of a run on groups of keys; None as for `spring_force`."""
     output = _program.simulate(_namelist.written(settings))
     if output.status != _program.DONE:
         return None
-    series = output.tables['series']
-    return series.values[:, series.names.index('time')], series.values[:, series.names.index('spring_force')]
+    table = output.tables['series']
+    return tuple(table.values[:, table.names.index(column)] for column in columns)

@@ -23,6 +23,7 @@ Simulate = Callable[[Settings], 'tuple[np.ndarray, np.ndarray] | None']
 STEP = 0.01             # of a constant, relative, for central differences: smaller ones give error bars too small
 LIMIT = 500.0           # misfits are bent to stay below
 NO_EVENTS = 300.0       # misfit of every feature where a simulation shows too few events
+NO_OUTLINE = 100.0      # the least of each coarse number then
 
 
 FINE, COARSE = 1e-6, 1e-4   # error in a step, part of the static friction force
@@ -59,13 +60,14 @@ class Constant:
 
 @dataclasses.dataclass
 class Problem:
-    """Records, model and free constants. A candidate is the vector of the constants' logarithms."""
+    """Records, model and free constants. A candidate is the vector of the logarithms of the constants over their lower
+    bounds, so that units do not matter."""
 
     base: Settings
     constants: Sequence[Constant]
     targets: Sequence[Target]
     simulate: Simulate
-    pool: concurrent.futures.Executor
+    pool: concurrent.futures.Executor | None
     journal: Journal
     limits: Limits
     #: What noise adds to the features on average: it blurs the mean cycle, and a peak is the largest of noisy samples.
@@ -73,31 +75,40 @@ class Problem:
 
     @property
     def low(self) -> np.ndarray:
-        return np.log([constant.low for constant in self.constants])
+        return np.zeros(len(self.constants))
 
     @property
     def high(self) -> np.ndarray:
-        return np.log([constant.high for constant in self.constants])
+        return np.log([constant.high / constant.low for constant in self.constants])
 
     @property
     def size(self) -> int:
         """Number of features."""
         return sum(target.values.size for target in self.targets)
 
-    def settings(self, candidate: np.ndarray, target: Target) -> Settings:
-        """Input of the run of one candidate for one record, without its end."""
-        settings = _namelist.merge(self.base, target.analysis.record.settings)
-        for constant, value in zip(self.constants, np.exp(candidate)):
+    def values(self, candidate: np.ndarray) -> np.ndarray:
+        """The constants of a candidate."""
+        return np.array([constant.low for constant in self.constants]) * np.exp(candidate)
+
+    def settings(self, candidate: np.ndarray, target: Target | None = None) -> Settings:
+        """Input of the run of one candidate for one record, without its end; or for no record."""
+        settings = _namelist.merge(self.base, target.analysis.record.settings if target else {})
+        for constant, value in zip(self.constants, self.values(candidate)):
             constant.set(settings, value)
         return settings
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: of a search that is over."""
+        return {**self.__dict__, 'pool': None}
 
     def run(self, candidate: np.ndarray, target: Target, end: float,
             rtol: float = FINE) -> tuple[np.ndarray, np.ndarray] | None:
         """Simulates up to a time."""
         self.limits.check()
         settings = self.settings(candidate, target)
-        set_times(settings, end, target.analysis.step / target.analysis.averaged, rtol)
-        return self.simulate(settings)
+        set_times(settings, end, target.analysis.row_step, rtol)
+        result = self.simulate(settings)
+        return None if result is None else (result[0], target.analysis.sense * result[1])
 
     def expected_end(self, target: Target, events: int) -> float:
         """Time by which a simulation like the record shows so many events [T]."""
@@ -141,7 +152,7 @@ class Problem:
             analysis = target.analysis
             scale = float(np.median(analysis.falls.peak))
             first_load = target.first_load
-            wanted = outline(analysis.falls, first_load, scale)
+            wanted = outline(analysis.falls, first_load, scale, analysis.period)
             result = self.run(candidate, target, self.expected_end(target, 4), COARSE)
             found = None
             if result is not None:
@@ -149,10 +160,10 @@ class Problem:
                 falls = find_falls(time, smooth(force, analysis.window), analysis.threshold)
                 if not analysis.from_rest:
                     falls = falls.part(slice(min(2, max(0, len(falls) - 3)), None))
-                found = outline(falls, first_load, scale)
+                found = outline(falls, first_load, scale, analysis.period)
                 level = abs(float(force[force.size // 2:].mean()) / float(analysis.force.mean()) - 1.0)
             if found is None:
-                parts.append(np.full(wanted.size, 100.0 + (50.0 * min(level, 1.0) if result is not None else 100.0)))
+                parts.append(np.full(wanted.size, NO_OUTLINE + (50.0 * min(level, 1.0) if result is not None else 100.0)))
             else:
                 parts.append(found - wanted)
         return np.concatenate(parts)
@@ -162,7 +173,8 @@ class Problem:
         function = {'coarse': self.coarse_misfit, 'full': self.all_features}[kind]
         known = [self.journal.get(kind, candidate) for candidate in candidates]
         missing = [i for i, values in enumerate(known) if values is None]
-        for i, values in zip(missing, self.pool.map(function, [candidates[i] for i in missing])):
+        run_all = self.pool.map if self.pool is not None else map
+        for i, values in zip(missing, run_all(function, [candidates[i] for i in missing])):
             known[i] = values
             self.journal.put(kind, candidates[i], values)
             self.limits.count += 1
@@ -192,7 +204,7 @@ def set_times(settings: Settings, end: float, step: float, rtol: float = FINE) -
     kept = {key: time[key] for key in ('dt_min', 'dt_max') if key in time}
     settings['time'] = {'t_end': float(end), 'rtol': max(float(time.get('rtol', FINE)), rtol), **kept}
     settings['output'] = {'every': float(step)}
-    settings['friction'].pop('scheme', None)
+    settings.get('friction', {}).pop('scheme', None)
 
 
 class Limits:
@@ -202,6 +214,9 @@ class Limits:
         self.most, self.seconds, self.progress = most, seconds, progress
         self.count = 0
         self.start = clock.monotonic()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, 'progress': None}
 
     def check(self) -> None:
         """Raises Stopped where a limit has been reached."""
@@ -261,6 +276,7 @@ class Journal:
     def close(self) -> None:
         if self.file is not None:
             self.file.close()
+            self.file = None
 
 
 def _key(candidate: Sequence[float]) -> bytes:
@@ -293,7 +309,7 @@ def _with_noise(target: Target, time: np.ndarray, force: np.ndarray, rng: np.ran
     clean = target.of_samples(time, force)
     if clean is None:
         return None
-    found = [target.of_samples(time, force + rng.normal(scale=target.analysis.noise, size=force.size))
+    found = [target.of_samples(time, force + target.draw_noise(rng, force.size))
              for _ in range(number)]
     return np.array([clean if features is None else features for features in found]) - clean
 
@@ -305,9 +321,10 @@ def search(problem: Problem, seed: int, starts: int) -> tuple[np.ndarray, str]:
     try:
         best.update(_search(problem, seed, starts, best))
     except Stopped as stop:
-        if best.candidate is None:
+        found = best.rough if best.candidate is None else best.candidate
+        if found is None:
             raise ValueError(f'the search was stopped {stop}, before any candidate showed stick-slip') from None
-        return best.candidate, f'the search was stopped {stop}: the values are the best so far'
+        return found, f'the search was stopped {stop}: the values are the best so far'
     return best.candidate, ''
 
 
@@ -317,6 +334,7 @@ class Best:
 
     candidate: np.ndarray | None = None
     cost: float = np.inf
+    rough: np.ndarray | None = None   #: the best of the coarse search, if it shows stick-slip
 
     def update(self, found: tuple[np.ndarray, float]) -> None:
         if found[1] < self.cost:
@@ -330,8 +348,11 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
     points = qmc.scale(qmc.Sobol(low.size, seed=seed).random(starts), low, high)
     costs = []
     for first in range(0, starts, 16):
-        costs += [float(np.sum(np.minimum(np.abs(values), 100.0)**2))
+        costs += [float(np.sum(np.minimum(np.abs(values), NO_OUTLINE)**2))
                   for values in problem.evaluate('coarse', points[first:first + 16])]
+        lowest = int(np.argmin(costs))
+        if costs[lowest] < NO_OUTLINE**2:
+            best.rough = points[lowest]
         limits.tell(f'start {min(first + 16, starts)} of {starts}')
     coarse = []
     for k, i in enumerate(np.argsort(costs)[:4]):
@@ -339,6 +360,7 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
                                      problem.coarse_jacobian, 'soft_l1', 10))
         limits.tell(f'coarse {k + 1} of 4: misfit {coarse[-1][1]:.3g}')
     coarse.sort(key=lambda found: found[1])
+    best.rough = coarse[0][0]
     if all(np.isnan(values).all() for values in problem.evaluate('full', [candidate for candidate, _ in coarse])):
         raise NoStickSlip
     for k, (candidate, _) in enumerate(coarse):

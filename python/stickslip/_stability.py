@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 VERDICTS = ('none', 'stable', 'neutral', 'unstable')
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Stability:
     """What becomes of small disturbances of steady sliding."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from .laws import AtPoints, Law
+from .laws import AtPoints, Law, require_law
 
 STATE_SIZE = 8   # numbers of a state: status, u_n, u_et1, u_et2, mu, internal variable, slip, dissipated energy
 _FLOAT = np.dtype(np.float64)
@@ -80,7 +80,12 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
         else:
             here[...] = state
         time.value = dt
-        status = _update_point(ndir, du.tobytes(), time, law._size, law._pointer, *arguments)
+        try:
+            size, pointer = law._size, law._pointer
+        except AttributeError:
+            require_law(law, own=True)
+            raise
+        status = _update_point(ndir, du.tobytes(), time, size, pointer, *arguments)
         if status < 0:
             traction[...] = tangent[...] = _nan
         result = _new(Result, (traction.copy(), tangent.copy(), here.copy(), status))
@@ -88,6 +93,8 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
         return result if out is None else _copy_to(out, result)
     if du.ndim != 2 or du.shape[1:] not in _PLACES:
         raise ValueError(f'du has the shape {du.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
+    require_law(law, own=True)
+    dt = ctypes.c_double(dt)
     by_point = du.flags.c_contiguous or not du.flags.f_contiguous
     order = 'C' if by_point else 'F'
     n, ndir = du.shape
@@ -152,6 +159,9 @@ def _check_out(out: Result, order: str, n: int, ndir: int) -> None:
 
 def _copy_to(out: Result, result: Result) -> Result:
     """The result of one point in the arrays of an earlier one."""
+    for name in ('traction', 'tangent', 'state'):
+        if (shape := np.shape(getattr(out, name))) != getattr(result, name).shape:
+            raise ValueError(f'out.{name} has the shape {shape}: {getattr(result, name).shape} is needed')
     for name in ('traction', 'tangent', 'state'):
         getattr(out, name)[...] = getattr(result, name)
     return out._replace(status=result.status)

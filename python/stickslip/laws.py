@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import ctypes
 import dataclasses
+import functools
+import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -40,6 +42,14 @@ class Law:
         object.__setattr__(self, '_pointer', ctypes.c_void_p(props.ctypes.data))
         if broken := _library.broken_rule(self._pointer, self._size):
             raise ValueError(f'{type(self).__name__}: {broken}')
+        for number, constant in zip(numbers[1:], _library.constants_of(self.number)):
+            if constant.words:   # a choice may be given by its number, too: the program takes words alone
+                object.__setattr__(self, constant.name, constant.words[int(number)])
+
+    def __reduce__(self) -> tuple:
+        """How a law is pickled and copied: made anew from its constants, because pointers belong to one process."""
+        return functools.partial(type(self), **{field.name: getattr(self, field.name) for field in dataclasses.fields(self)
+                                                if field.init}), ()
 
     def _number(self, constant: _library.Constant, before: list[float]) -> float:
         """A constant as the number that the friction routine takes."""
@@ -50,12 +60,15 @@ class Law:
             if value not in constant.words:
                 raise ValueError(f"{type(self).__name__}: {constant.name} = {value!r}: one of {', '.join(constant.words)}")
             value = constant.words.index(value)
-        if value is None or isinstance(value, (str, bytes, bool)):
+        if value is None or isinstance(value, (str, bytes, bool, np.bool_)):
             raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number')
         try:
-            return float(value)
+            number = float(value)
         except (TypeError, ValueError):
             raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number') from None
+        if not math.isfinite(number):
+            raise ValueError(f'{type(self).__name__}: {constant.name} = {number}: must be finite')
+        return number
 
     def at_points(self, **constants: ArrayLike) -> AtPoints:
         """The same law with other values of some constants at each of n points, for `update` and `slip_rates`.
@@ -92,6 +105,9 @@ class AtPoints:
             if known[name].words:
                 raise ValueError(f'{name} is a choice, which all points share')
             given[name] = np.asarray(values, float)
+            if not (finite := np.isfinite(given[name]).ravel()).all():
+                i = int(np.argmin(finite))
+                raise ValueError(f'{type(law).__name__}, point {i}: {name} = {given[name].ravel()[i]}: must be finite')
         sizes = {values.shape for values in given.values()}
         if len(sizes) != 1 or len(next(iter(sizes))) != 1:
             raise ValueError('one number a point is needed of each constant: the shapes are '
@@ -111,6 +127,11 @@ class AtPoints:
     def __len__(self) -> int:
         return self.props.shape[1]
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """What pickle does, but for the array, which it would leave writable."""
+        self.__dict__.update(state)
+        self.props.flags.writeable = False
+
     @property
     def _size(self) -> int:
         """What `update` of one point asks for first."""
@@ -123,6 +144,12 @@ class AtPoints:
         for i, props in enumerate(np.ascontiguousarray(self.props.T)):
             if broken := _library.broken_rule(ctypes.c_void_p(props.ctypes.data), props.size):
                 raise ValueError(f'{type(self.law).__name__}, point {i}: {broken}')
+
+
+def require_law(law: Any, own: bool) -> None:
+    """Raises TypeError where this is no law, or none that is allowed. own: may points have constants of their own?"""
+    if not isinstance(law, (Law, AtPoints) if own else Law):
+        raise TypeError(f'law: an object of stickslip.laws{"" if own else ", the same at all points,"} is needed, not {law!r}')
 
 
 def _field(constant: _library.Constant) -> tuple[str, Any, Any]:

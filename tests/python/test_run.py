@@ -2,6 +2,7 @@
 import concurrent.futures
 import os
 import pathlib
+import pickle
 import subprocess
 import tempfile
 import unittest
@@ -10,11 +11,13 @@ import warnings
 import numpy as np
 
 import stickslip
+from stickslip import _namelist
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SLIDER = {'mass': 1e-3, 'stiffness': 1.0, 'damping': 0.01, 'area': 1000.0, 'normal_traction': 0.01}
 LAW = stickslip.laws.Subloading(alpha_n=1.0, alpha_t=1.0, mu_s=0.4, mu_k=0.2, kappa=10.0, xi=10.0, m=1000.0)
 INPUT = {'friction': LAW, 'slider': SLIDER, 'drive': {'velocity': 1.0}, 'time': {'t_end': 8.0, 'dt': 1e-3}}
+SHORT = {**INPUT, 'time': {'t_end': 0.02, 'dt': 1e-3}}
 
 
 class Run(unittest.TestCase):
@@ -67,6 +70,46 @@ class Run(unittest.TestCase):
         with self.assertRaises(TypeError):
             stickslip.run({'friction': 3})
 
+    def test_a_file_is_read_as_the_program_reads_it(self):
+        """Whatever wrote it, and whatever its folder is called."""
+        text = f'! \xb5m, \xe4\n{_namelist.written(_namelist.groups_of(SHORT))}'
+        rows = stickslip.run(SHORT).table
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'a&b', 'x.nml')
+            path.parent.mkdir()
+            for content in (*map(text.encode, ('utf-8', 'utf-8-sig', 'utf-16', 'utf-16-le', 'utf-16-be', 'latin-1')),
+                            text.replace('\n', '\r\n').encode()):
+                path.write_bytes(content)
+                np.testing.assert_array_equal(stickslip.run(str(path)).table, rows)
+                self.assertEqual(len(stickslip.stability(path).table), 1)
+            path.write_bytes(text.encode() + b'\n\0&slider /')
+            with self.assertRaisesRegex(stickslip.InputError, 'x.nml: line [0-9]+: a character 0'):
+                stickslip.run(path)
+        with self.assertRaisesRegex(stickslip.InputError, 'a character 0'):
+            stickslip.run(text + '\0')
+
+    def test_a_dict_may_hold_whatever_holds_numbers(self):
+        import pandas
+        pieces = {'velocity': [1.0, 2.0], 'duration': [0.01, 0.01]}
+        rows = stickslip.run({**SHORT, 'drive': pieces}).table
+        for kind in (tuple, np.array, pandas.Series, lambda numbers: np.array(numbers, np.float32).astype(object)):
+            drive = {'velocity': kind(pieces['velocity']), 'duration': pieces['duration']}
+            np.testing.assert_array_equal(stickslip.run({**SHORT, 'drive': drive}).table, rows)
+        self.assertEqual(len(stickslip.run({**SHORT, 'drive': {'velocity': np.array(1.0)}}).table), 21)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'drive.csv')
+            path.write_text('time,velocity\n0,1\n1,1\n')
+            self.assertEqual(len(stickslip.run({**SHORT, 'drive': {'file': path}}).table), 21)
+
+    def test_a_dict_that_says_a_thing_twice_is_refused(self):
+        for changes, words in (({'Drive': {'velocity': 2.0}}, 'group drive: given twice'),
+                               ({'drive': {'velocity': 1.0, 'Velocity': 2.0}}, 'key velocity: given twice')):
+            with self.assertRaisesRegex(stickslip.InputError, words):
+                stickslip.run({**SHORT, **changes})
+        for changes in ({3: {}}, {'drive': {3: 1.0}}):
+            with self.assertRaisesRegex(TypeError, '3: a name is needed'):
+                stickslip.run({**SHORT, **changes})
+
     def test_what_was_computed_before_a_failure_is_kept(self):
         unstable = {'friction': stickslip.laws.SlipWeakening(alpha_n=1000, alpha_t=1000, mu_s=0.4, mu_k=0.2, d_c=0.01),
                     'slider': {**SLIDER, 'mass': 0.0, 'damping': 0.0, 'stiffness': 100.0, 'area': 1.0,
@@ -75,6 +118,8 @@ class Run(unittest.TestCase):
         with self.assertRaisesRegex(stickslip.RunError, 'unstable without inertia') as caught:
             stickslip.run(unstable)
         self.assertGreater(len(caught.exception.run.table), 100)
+        again = pickle.loads(pickle.dumps(caught.exception))   # as on its way from another process
+        self.assertEqual((str(again), len(again.run.table)), (str(caught.exception), len(caught.exception.run.table)))
 
     def test_threads_give_what_one_after_another_gives(self):
         """Different inputs at once, faults and failures among them."""

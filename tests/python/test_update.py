@@ -1,7 +1,9 @@
 """stickslip.update and stickslip.laws, from the installed package."""
+import copy
 import dataclasses
 import math
 import pathlib
+import pickle
 import pydoc
 import sys
 import threading
@@ -121,6 +123,22 @@ class Update(unittest.TestCase):
             stickslip.update(np.zeros((5, 3)), 0.1, law, out=other)
         with self.assertRaises(TypeError):
             stickslip.update([0.0, 0.0], 'long', law)
+
+    def test_what_is_no_law_or_fits_nowhere_is_told(self):
+        law, one, many = LAWS['coulomb'], np.array([-0.01, 0.1]), motions(3, 2)
+        points, none = law.at_points(mu=[0.1, 0.2, 0.3]), 'an object of stickslip.laws'
+        for bad in (None, 3, stickslip.laws.Coulomb):
+            for call in (lambda: stickslip.update(one, 0.1, bad), lambda: stickslip.update(many, 0.1, bad),
+                         lambda: stickslip.rates(one, bad, np.zeros(8)), lambda: stickslip.slip_rates([1.0], [1.0], bad, [1.0])):
+                with self.assertRaisesRegex(TypeError, none):
+                    call()
+        with self.assertRaisesRegex(TypeError, 'the same at all points'):
+            stickslip.rates(many, points, np.zeros((3, 8)))
+        for du in (one, many):
+            with self.assertRaisesRegex(TypeError, 'real number'):
+                stickslip.update(du, 'soon', law)
+        with self.assertRaisesRegex(ValueError, r'out.traction has the shape \(3, 2\): \(2,\)'):
+            stickslip.update(one, 0.1, law, out=stickslip.update(many, 0.1, law))
 
     def test_threads_do_not_meet(self):
         law, du = LAWS['subloading'], motions(5000, 3)
@@ -331,6 +349,34 @@ class Laws(unittest.TestCase):
         with self.assertRaises(ValueError):
             law.props[3] = 3
         self.assertEqual(hash(law), hash(dataclasses.replace(law)))
+
+    def test_laws_are_pickled_and_copied(self):
+        """Processes and caches do that; a pointer of another process would be rubbish."""
+        for law in LAWS.values():
+            for other in (pickle.loads(pickle.dumps(law)), copy.deepcopy(law), copy.copy(law)):
+                self.assertEqual(other, law)
+                np.testing.assert_array_equal(stickslip.update([-0.01, 0.1], 0.1, other).state,
+                                              stickslip.update([-0.01, 0.1], 0.1, law).state)
+            points = law.at_points(alpha_t=[1.0, 2.0])
+            for other in (pickle.loads(pickle.dumps(points)), copy.deepcopy(points)):
+                np.testing.assert_array_equal(other.props, points.props)
+                self.assertFalse(other.props.flags.writeable)
+
+    def test_choices_are_given_by_word_or_number(self):
+        by_number, by_word = (dataclasses.replace(LAWS['subloading'], u_of_r=choice) for choice in (1, 'cotangent'))
+        self.assertEqual(by_number, by_word)
+        self.assertEqual(by_number.constants()['u_of_r'], 'cotangent')   # which the program takes
+        with self.assertRaisesRegex(ValueError, 'u_of_r must be 0'):
+            dataclasses.replace(LAWS['subloading'], u_of_r=1.5)
+
+    def test_a_constant_that_is_no_number_is_named(self):
+        for value, words in ((math.nan, 'mu = nan: must be finite'), (math.inf, 'mu = inf: must be finite')):
+            with self.assertRaisesRegex(ValueError, words):
+                dataclasses.replace(LAWS['coulomb'], mu=value)
+        with self.assertRaisesRegex(ValueError, 'point 1: mu = nan'):
+            LAWS['coulomb'].at_points(mu=[0.1, math.nan])
+        with self.assertRaisesRegex(TypeError, 'not a number'):
+            dataclasses.replace(LAWS['coulomb'], mu=np.bool_(True))
 
     def test_options_reach_the_library(self):
         capped = stickslip.laws.Coulomb(alpha_n=1000, alpha_t=800, mu=0.3, tau_max=1.5)
