@@ -174,10 +174,13 @@ class Problem:
         known = [self.journal.get(kind, candidate) for candidate in candidates]
         missing = [i for i, values in enumerate(known) if values is None]
         run_all = self.pool.map if self.pool is not None else map
-        for i, values in zip(missing, run_all(function, [candidates[i] for i in missing])):
+        allowed = missing[:self.limits.left()]   # as many whatever the number of threads
+        for i, values in zip(allowed, run_all(function, [candidates[i] for i in allowed])):
             known[i] = values
             self.journal.put(kind, candidates[i], values)
             self.limits.count += 1
+        if len(allowed) < len(missing):
+            raise Stopped(f'after {self.limits.count} evaluations')
         return known
 
     def jacobian(self, candidate: np.ndarray, step: float = STEP, floor: float = FLOOR) -> tuple[np.ndarray, np.ndarray]:
@@ -218,10 +221,12 @@ class Limits:
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, 'progress': None}
 
+    def left(self) -> int | None:
+        """Evaluations that may still be made; None: any number."""
+        return None if self.most is None else max(0, self.most - self.count)
+
     def check(self) -> None:
-        """Raises Stopped where a limit has been reached."""
-        if self.most is not None and self.count >= self.most:
-            raise Stopped(f'after {self.count} evaluations')
+        """Raises Stopped where the time is over."""
         if self.seconds is not None and clock.monotonic() - self.start > self.seconds:
             raise Stopped(f'after {self.seconds:g} seconds')
 
