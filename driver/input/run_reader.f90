@@ -335,7 +335,8 @@ contains
         character(len=*), parameter :: group = 'friction', key = 'eta_t'
         type(facts) :: law
 
-        if (.not. (allocated(run%props) .and. allocated(run%drive%normal) .and. run%adaptive)) return
+        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
+        if (.not. run%adaptive) return
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
         if (run%newmark .or. .not. run%one_by_itself()) then
