@@ -28,7 +28,7 @@ module fault_recorder
         logical, private :: draws_contours = .false.
     contains
         procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes
-        procedure, private :: write_rows, write_contours, write_event
+        procedure, private :: write_rows, write_contours, contours_until, write_event
     end type recorder
 
 contains
@@ -190,7 +190,7 @@ contains
             event%largest_slip, event%mean_slip, event%potency]) // ',' // trim(number))
     end subroutine write_event
 
-    !> Slip along depth at even times, by cubic interpolation between the ends of the step.
+    !> Slip along depth at even times, between events and in them.
     subroutine write_contours(self, here, together, state, watch, ended)
         class(recorder), intent(inout) :: self
         type(fault), intent(in) :: here
@@ -198,15 +198,36 @@ contains
         type(fault_state), intent(in) :: state
         type(event_watch), intent(in) :: watch
         logical, intent(in) :: ended
+        logical :: in_event
+        real(dp) :: last
+
+        in_event = watch%on .or. ended
+        if (in_event .and. watch%event%onset >= self%time_before) then
+            call self%contours_until(here, together, state, .false., watch%event%onset)
+            self%next_contour = watch%event%onset
+        end if
+        last = state%time
+        if (ended) last = watch%event%onset + watch%event%duration
+        call self%contours_until(here, together, state, in_event, last)
+        if (ended) self%next_contour = here%plan%contours(1) * (1 + aint(state%time &
+            / here%plan%contours(1)))
+    end subroutine write_contours
+
+    !> The contours of a step up to a time, by cubic interpolation between its ends.
+    subroutine contours_until(self, here, together, state, in_event, last)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state   !! at the end of the step
+        logical, intent(in) :: in_event
+        real(dp), intent(in) :: last             !! [T]
         real(dp) :: dt, u, own(here%n)
         real(dp), dimension(here%plan%nz) :: slip, rate, rate_before
         integer :: stride, k
 
         dt = state%time - self%time_before
         stride = (here%plan%nz + most_depths - 1) / most_depths
-        if (watch%on .and. watch%event%onset >= self%time_before) self%next_contour = &
-            watch%event%onset
-        do while (self%next_contour <= state%time)
+        do while (self%next_contour <= last)
             u = (self%next_contour - self%time_before) / dt
             own = self%slip_before + u**2 * (3.0_dp - 2.0_dp * u) * (state%slip &
                 - self%slip_before) + dt * u * (1.0_dp - u) * ((1.0_dp - u) * self%rate_before &
@@ -217,14 +238,12 @@ contains
             rate = (1.0_dp - u) * log10_of(rate_before) + u * log10_of(rate)
             do k = 1, here%plan%nz, stride
                 if (self%writes) call self%contours%write_line(full_row([self%next_contour, &
-                    merge(1.0_dp, 0.0_dp, watch%on), here%plan%z_of(k), slip(k), rate(k)]))
+                    merge(1.0_dp, 0.0_dp, in_event), here%plan%z_of(k), slip(k), rate(k)]))
             end do
             if (self%writes) call self%contours%write_line('')
-            self%next_contour = self%next_contour + here%plan%contours(merge(2, 1, watch%on))
+            self%next_contour = self%next_contour + here%plan%contours(merge(2, 1, in_event))
         end do
-        if (ended) self%next_contour = here%plan%contours(1) * (1 + aint(state%time &
-            / here%plan%contours(1)))
-    end subroutine write_contours
+    end subroutine contours_until
 
     subroutine flush_all(self)
         class(recorder), intent(inout) :: self

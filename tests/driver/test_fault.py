@@ -296,6 +296,21 @@ class Output(FaultTest):
         else:
             self.assertEqual([part.text for part in last], [f'{len(times) - 1} 0 0 1 1 1 1 21 30', 'case_fields.h5:/internal'])
 
+    def test_contours_are_of_an_event_or_between(self):
+        """With times so short that several fall into the steps in which an event begins and ends."""
+        self.run_fault(self.write(SMALL.replace('3e8, 10', '2e8, 0.3')), '--quiet')
+        events = self.events('case_out', 'case')
+        self.assertEqual(len(events), 1)
+        onset, duration = (float(events[0][name]) for name in ('onset', 'duration'))
+        with open(self.place / 'case_out' / 'case_contours.csv', newline='') as file:
+            times = {(float(row['time']), float(row['event'])) for row in csv.DictReader(file) if row['time']}
+        during = sorted(time_ for time_, event in times if event)
+        self.assertEqual(len(during), 1 + int(duration / 0.3))
+        for k, time_ in enumerate(during):
+            self.assertAlmostEqual(time_, onset + 0.3 * k, delta=1e-3)
+        between = [time_ for time_, event in times if not event]
+        self.assertEqual(sorted(between), [2e8 * k for k in range(1, 51)])
+
     def test_fields_are_read_by_h5py(self):
         python = next((python for python in (sys.executable, '/usr/bin/python3') if not subprocess.run(
             [python, '-c', 'import h5py'], capture_output=True).returncode), None)
