@@ -51,7 +51,9 @@ contains
             end do
         end if
         call find_states(here, state, cell)
-        call tell_refused_cell(here, together, state, cell, problem)
+        state%traction = here%prestress - here%damping * state%rate
+        call tell_refused_cell(here, together, state, cell, 'no state of friction slides so', &
+            problem)
     end subroutine start_rate_state
 
     !> The states that slide as told, under the tractions that are told.
@@ -83,11 +85,12 @@ contains
     end subroutine find_states
 
     !> What is wrong with the start of the first cell of all that is refused.
-    subroutine tell_refused_cell(here, together, state, cell, problem)
+    subroutine tell_refused_cell(here, together, state, cell, why, problem)
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         type(fault_state), intent(in) :: state
-        integer, intent(in) :: cell   !! first one of this process; or 0
+        integer, intent(in) :: cell            !! first one of this process; or 0
+        character(len=*), intent(in) :: why    !! all processes say the same
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
         character(len=24) :: numbers(4)
         integer(int64) :: own, first
@@ -99,14 +102,13 @@ contains
         first = together%lowest(own)
         if (first == huge(first)) return
         given = -huge(given)
-        if (own == first) given = [state%rate(cell), here%prestress(cell) - here%damping &
-            * state%rate(cell)]
+        if (own == first) given = [state%traction(cell), state%rate(cell)]
         call together%largest_of_each(given)
         write (numbers, '(g0.6)') here%plan%x_of(int(modulo(first - 1, int(here%plan%nx, int64))) &
             + 1), here%plan%z_of(int((first - 1) / here%plan%nx) + 1), given
         problem = 'at the start, at x = ' // trim(numbers(1)) // ', z = ' // trim(numbers(2)) &
-            // ': no state of friction slides at ' // trim(numbers(3)) // ' under a traction of ' &
-            // trim(numbers(4))
+            // ', under a traction of ' // trim(numbers(3)) // ' and at a slip rate of ' &
+            // trim(numbers(4)) // ': ' // why
     end subroutine tell_refused_cell
 
     !> Whether a cell starts as the one before it does: its state is then known.
@@ -133,7 +135,7 @@ contains
         real(dp), intent(out) :: statev(:, :)                   !! cell, place
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
         real(dp) :: given(1), contact(statev_size)
-        integer :: i, k, cell, status
+        integer :: i, k, cell, status, own_status
 
         problem = ''
         status = 0
@@ -168,11 +170,11 @@ contains
             end do
             if (status < 0) exit
         end do
-        status = int(together%lowest(int(min(status, 0), int64)))
-        if (status < 0) then
-            problem = 'the state at the start is refused: ' // friction_message(status)
-            return
-        end if
+        own_status = status
+        status = int(together%lowest(int(min(own_status, 0), int64)))
+        if (own_status >= 0) cell = 0
+        call tell_refused_cell(here, together, state, cell, trim(friction_message(status)), problem)
+        if (len(problem) > 0) return
         here%prestress = state%traction + here%damping * state%rate
     end subroutine start_contacts
 
@@ -214,6 +216,7 @@ contains
 
         facts = friction_facts(props)
         statev = 0.0_dp
+        traction = 0.0_dp
         t = 0.0_dp
         tangent = 0.0_dp
         call friction_update([-pressure / facts%alpha_n, 0.0_dp], 0.0_dp, props, statev, t, &
