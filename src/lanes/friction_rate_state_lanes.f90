@@ -67,9 +67,7 @@ contains
         do i = 1, lanes
             call mean_growth(pressed(i), left(i), mean, fall)
             block%r_rest(i) = block%r(i) * left(i) + older * mean
-            if (abs(pressed(i)) + constants(i, c_alpha) / constants(i, c_b) >= most_pressing) then
-                block%valid(i) = -1.0_wp
-            end if
+            if (abs(pressed(i)) >= most_pressing) block%valid(i) = -1.0_wp
         end do
     end subroutine rest_rate_state
 
@@ -148,7 +146,7 @@ contains
             block%mu_end(i) = constants(i, c_a) * asinh_of(u(i), e_u(i))
             block%r_end(i) = exp(min(after%ln_theta(i), ln_most_theta))
             block%left(i) = max(0.0_wp, ln_least_theta - after%ln_theta(i), after%ln_theta(i) &
-                - ln_most_theta, ln_least_slip - (after%z(i) - state%ln_d_c(i)))
+                - ln_most_theta)
             ! round-off of the traction is more of the slip, whose logarithm counts
             steepness = max(abs(after%by_ln_slip(i)), abs(1.0_wp + state%b_over_a(i) &
                 * after%by_ln_slip(i)) * (constants(i, c_a) / max(constants(i, c_a), &
