@@ -589,7 +589,8 @@ contains
             * self%carried_pressure(state%statev(1, statev_u_n))**2 / self%props(prop_alpha_n)
     end subroutine take_stock_across
 
-    !> Energy that contact springs still held when their contacts opened: nothing gets it back.
+    !> Energy that contact springs still held when their contacts opened: nothing gets it back. Nor
+    !> what the drive spring of a block without mass and damping held: that follows at once.
     pure function let_go(self, old, new) result(energy)
         class(slider), intent(in) :: self
         type(slider_state), intent(in) :: old, new
@@ -604,6 +605,8 @@ contains
             if (new%statev(i, statev_status) < open) cycle
             if (allocated(self%constants)) alpha = self%constants(i, prop_alpha_t)
             energy = energy + 0.5_dp * self%area * alpha * old%statev(i, statev_u_et)**2
+            if (self%mass > 0.0_dp .or. self%damping > 0.0_dp) cycle
+            energy = energy + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / self%stiffness
         end do
     end function let_go
 

@@ -600,6 +600,7 @@ contains
             if (tried%error <= 1.0_dp) then
                 call self%equations%rates(t + tried%h, tried%y, tried%last, failed)
                 if (failed) tried%error = huge(tried%error)
+                if (wild(self, tried)) tried%error = max(tried%error, 2.0_dp**4)
                 if (.not. self%system%mass > 0.0_dp) call damp(self, t, tried)
                 if (self%equations%follows_traction() .and. .not. failed) call balance(self, t, &
                     tried)
@@ -639,8 +640,31 @@ contains
         end associate
     end subroutine balance
 
-    !> What the damper takes of a block without mass, whose velocity is a small difference of
-    !> forces: within a long step of Rodas4 it is not well enough known to be squared, its mean is.
+    !> Have the stages of a step been far from where it starts and ends? Then what slip dissipates
+    !> over the slip is no traction of these.
+    pure function wild(self, tried)
+        class(continuous), intent(in) :: self
+        type(trial), intent(in) :: tried
+        logical :: wild
+        real(dp), parameter :: far = 1.5_dp, round_off = 16.0_dp * epsilon(1.0_dp)
+        real(dp) :: tractions(2), way, work, least
+
+        associate (eq => self%equations, before => self%y, after => tried%y)
+            way = after(slip) - before(slip)
+            work = after(dissipated) - before(dissipated)
+            tractions = eq%alpha * abs([before(elastic), after(elastic)])
+            wild = .false.
+            if (eq%damper > 0.0_dp .or. .not. maxval(tractions) > 0.0_dp) return
+            if (way * self%weights(elastic) <= 1.0_dp .or. way <= round_off * after(slip)) return
+            least = minval(tractions) * (way - round_off * after(slip))
+            wild = work - round_off * after(dissipated) > far * maxval(tractions) * way .or. &
+                far * (work + round_off * after(dissipated)) < least
+        end associate
+    end function wild
+
+    !> What damper and slip take of a block without mass, whose velocity is a small difference of
+    !> forces: within a long step of Rodas4 it is not well enough known to be squared, or multiplied
+    !> by a traction that changes, its mean is.
     pure subroutine damp(self, t, tried)
         class(continuous), intent(in) :: self
         real(dp), intent(in) :: t             !! [T]
@@ -654,6 +678,8 @@ contains
                 d%drive_velocity(t + tried%h, i) - tried%last(extension)]
         end associate
         tried%y(damped) = self%y(damped) + 0.5_dp * self%system%damping * sum(v) * way
+        tried%y(dissipated) = self%y(dissipated) + 0.5_dp * abs(self%equations%traction(t, self%y) &
+            + self%equations%traction(t + tried%h, tried%y)) * (tried%y(slip) - self%y(slip))
     end subroutine damp
 
     !> What the error of each unknown is compared with: its own size, but not less than the

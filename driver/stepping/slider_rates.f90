@@ -281,6 +281,10 @@ contains
         contact%ratio = 0.0_dp
         if (.not. self%follows_share()) return
         if (contact%slip > 0.0_dp .or. self%phase == phase_stick) contact%ratio = changes%r
+        if (contact%slip < 0.0_dp) then   ! just before it sticks: as smooth as derivatives need it
+            changes = self%surface%state_rates(state, load, -contact%slip)
+            contact%ratio = -changes%r
+        end if
     end subroutine damped_contact
 
     !> Is it a subloading surface beside a damper? Then R follows the traction while that falls:

@@ -58,6 +58,42 @@ class Phases(Program):
             &time t_end=123, rtol=1e-7 /""")
         self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])
 
+    def test_what_a_drive_spring_without_mass_and_damper_holds_when_the_contact_opens_counts_as_lost(self):
+        for steps, part in (('rtol=1e-6', 1e-4), ('dt=1e-3', 1e-2)):
+            _, energies = self.table(f"""&friction law='coulomb', mu=0.5, alpha_n=1000, alpha_t=100 /
+                &slider mass=0, stiffness=100, area=10, normal_traction=10 /
+                &drive velocity=0.44, duration=1, 1, normal=10, 0 /
+                &time t_end=2, {steps} /""")
+            lost = 0.44**2 / (2 / 100 + 2 / (10 * 100))   # two springs in series
+            self.assertAlmostEqual(energies['dissipated'], lost, delta=part * lost)
+            self.assertLess(abs(energies['unbalanced']), part * energies['drive'])
+
+    def test_energies_of_a_block_without_mass_close_where_its_velocity_changes_over_decades(self):
+        # relieved in a hold; and a rigid one under a ramp of the pressure, in steps far longer than damping/stiffness
+        for text, part in (
+                ("""&friction law='flash_heating', alpha_n=10.8, alpha_t=27.1, a=7.42e-3, b=6.71e-3, d_c=0.0201, v0=1.475, f0=0.846,
+                        f_w=0.385, v_w=1370 /
+                    &slider mass=0, stiffness=0.576, damping=2.08e-4, area=0.2335 /
+                    &drive velocity=-0.18, 0, 0, 0.18, duration=0.59, 0.59, 0.59, 0.59, normal=0.385, 0.385, 0.1925, 0.1925 /
+                    &time t_end=2.355, rtol=5e-5 /""", 1e-3),
+                ("""&friction law='slip_weakening', alpha_n=82, alpha_t=270, mu_s=0.56, mu_k=0.43, d_c=1.72, contact='rigid' /
+                    &slider mass=0, stiffness=12.15, damping=299, area=4.465 /
+                    &drive velocity=-1.05e-3, 1.05e-3, 1.05e-3, duration=23000, 23000, 23000, normal=28.5, 5.7, 114,
+                        normal_change='ramp' /
+                    &time t_end=69000, rtol=1.7e-5 /""", 5e-3)):
+            _, energies = self.table(text)
+            self.assertLess(abs(energies['unbalanced']), part * energies['dissipated'])
+
+    def test_a_subloading_surface_beside_a_damper_does_not_chatter_under_a_varying_pressure(self):
+        # a derivative taken across the end of slip made a step of each 1e-4 of it
+        result = self.run_text("""&friction law='subloading', alpha_n=2.39e4, alpha_t=5.79e4, mu_s=0.32, mu_k=0.142, kappa=43.7,
+                xi=8.04e-3, m=3.07e4, eta_t=5414 /
+            &slider mass=0, stiffness=64, damping=156, area=3.445, normal_traction=68.7 /
+            &drive velocity=3.99e-3, 1.198e-3, duration=781, 781, normal_amplitude=61.9, normal_frequency=9.06e-3 /
+            &time t_end=300, rtol=7.5e-5 /""", '--no-plot')
+        self.assert_done(result)
+        self.assertLess(int(re.search(r'steps +(\d+)', result.stdout).group(1)), 2000)
+
     def test_a_rigid_contact_that_touches_down_does_not_stop_its_block(self):
         # v0 through the open second, then M v' = -mu N: stops after v0 M/(mu N), v0^2 M/(2 mu N)
         for law in ("'coulomb', mu=0.2", "'slip_weakening', mu_s=0.4, mu_k=0.2, d_c=1e-9",
