@@ -4,7 +4,7 @@ module check
     use fault_reader, only : read_fault_plan
     use fault_settings, only : fault_plan
     use fault_study, only : check_by_engine
-    use input_kind, only : verb_of
+    use input_kind, only : fitting, refuse_other_verb, verb_of
     use namelist_input, only : namelist_file
     use platform, only : report
     use profile_reader, only : names_netcdf
@@ -37,11 +37,15 @@ contains
         real(dp), parameter :: worth_telling = 0.1_dp   !! [GB]
         character(len=:), allocatable :: problem
         character(len=80) :: extent, size_text
+        logical :: refused
 
         exit_status = exit_bad_input
         if (.not. is_readable(input, file)) return
         verb = verb_of(file)
         select case (verb)
+        case (fitting)
+            call refuse_other_verb('check', file, refused)
+            if (has_faults(file)) return
         case ('point')
             call read_point_settings(file, path)
             if (has_faults(file)) return

@@ -55,13 +55,12 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print('stickslip-fit: interrupted; --resume goes on from here', file=sys.stderr)
         return 1
-    print(found)
     try:
         _write(found, records, folder, given.input.stem, not given.no_plot)
+        checkpoint.unlink(missing_ok=True)
+        print(f'{found}\nresults in {folder}', flush=True)
     except (OSError, ImportError) as error:
         return _fail(given.input, error, 1)
-    checkpoint.unlink(missing_ok=True)
-    print(f'results in {folder}')
     return 0
 
 

@@ -203,6 +203,11 @@ class GoodInput(Program):
                 self.assertIn(f'this is an input of the verb {right}, not of {verb}', result.stderr)
                 self.assertTrue(result.stderr.endswith(f': stickslip {right} {path}\n'), result.stderr)
         self.assertEqual(os.listdir(self.folder), [])
+        (self.folder / 'rig.nml').write_text(f"{namelist()}&fit records='rig.csv' free='mu_s' /\n")
+        for verb in ('run', 'check', 'sweep', 'point', 'stability') + (('fault',) if FAULT_ENGINE else ()):
+            result = self.run_program(verb, 'rig.nml')
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertRegex(result.stderr, f'^rig.nml:[0-9]+: this is an input of .* fit, not of {verb}: stickslip-fit rig.nml\n$')
 
     def test_an_input_may_come_from_a_pipe(self):
         # it can be read once only

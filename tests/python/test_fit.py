@@ -3,6 +3,7 @@ import contextlib
 import copy
 import dataclasses
 import io
+import os
 import pathlib
 import pickle
 import subprocess
@@ -220,6 +221,21 @@ class Fit(unittest.TestCase):
             self.assertEqual(sorted(path.name for path in (folder / 'out').iterdir()),
                              ['rig.nml', 'rig.png', 'rig.txt', 'rig_rig_2.nml', 'rig_rig_3.nml'])
             self.assertGreater(len(stickslip.run(folder / 'out' / 'rig_rig_2.nml').table), 1000)
+
+    @unittest.skipUnless(os.path.exists('/dev/full'), 'needs /dev/full')
+    def test_results_are_on_disk_where_the_output_cannot_be_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            np.savetxt(folder / 'rig.csv', np.column_stack([self.time, self.force]), header='time,spring_force', delimiter=',',
+                       comments='')
+            (folder / 'rig.nml').write_text(stickslip._namelist.written({**INPUT, 'fit': {
+                'records': 'rig.csv', 'free': 'mu_s', 'lower': 0.3, 'upper': 0.6, 'starts': 8, 'most_evaluations': 20}}))
+            with open('/dev/full', 'w') as full:
+                result = subprocess.run([sys.executable, '-m', 'stickslip._fit_command', 'rig.nml', '--no-plot'], cwd=folder,
+                                        text=True, stdout=full, stderr=subprocess.PIPE, check=False)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, '^stickslip-fit: rig.nml: .*No space left')
+            self.assertTrue((folder / 'rig_fit' / 'rig.txt').read_text().startswith('mu_s'))
 
     def test_a_namelist_that_is_parsed_in_another_way_is_refused(self):
         for text, words in (('&friction mu_s=.4 mu_s=.5 /', 'mu_s: given twice'), ('&drive velocity(2)=1 /', 'subscripts'),
