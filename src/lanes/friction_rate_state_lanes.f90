@@ -28,7 +28,8 @@ module friction_rate_state_lanes
         type(evolved) :: at          !! the slip
         real(wp) :: ln_theta(lanes)  !! of points that have settled
         real(wp) :: low(lanes), high(lanes)   !! the bracket of z
-        real(wp) :: u_0(lanes)       !! u of the core without slip and theta's change
+        real(wp) :: u_0(lanes)       !! u of the core without slip and theta
+        real(wp) :: w_0(lanes)       !! ln(v0/d_c)
     end type search
 
 contains
@@ -81,7 +82,7 @@ contains
         integer, parameter :: max_iterations = 25
         type(evolution) :: state
         type(search) :: now
-        real(wp) :: still
+        real(wp) :: still, stiff, misfit
         integer :: i, iteration
 
         call prepare(kind, constants, dt, block, state, now)
@@ -109,8 +110,14 @@ contains
         end do
         do i = 1, block%n
             block%d_slip(i) = block%d_slip(i) / block%slip(i)
-            block%d_pressure(i) = block%mu_end(i) + block%d_pressure(i)
             block%resistance(i) = block%mu_end(i) * block%pressure(i)
+            ! the stiffer of the two, spring or law, knows the traction better
+            stiff = max(block%d_slip(i), 0.0_wp)
+            misfit = block%trial(i) - block%stiffness(i) * block%slip(i) - block%resistance(i)
+            block%resistance(i) = max(block%resistance(i) + misfit * (stiff / (block%stiffness(i) &
+                + stiff)), 0.0_wp)
+            block%mu_end(i) = block%resistance(i) / block%pressure(i)
+            block%d_pressure(i) = block%mu_end(i) + block%d_pressure(i)
             block%left(i) = max(block%left(i), state%several(i), ln_least_theta &
                 - now%ln_theta(i), now%ln_theta(i) - ln_most_theta)
         end do
@@ -174,7 +181,9 @@ contains
         do i = 1, block%n
             now%high(i) = state%ln_most(i)
             now%low(i) = state%ln_d_c(i) + ln_least_slip
-            now%u_0(i) = state%x_n(i) - state%b_over_a(i) * state%ln_theta_n(i)
+            now%w_0(i) = state%ln_v0(i) - state%ln_d_c(i)
+            now%u_0(i) = state_exponent(constants(i, c_a), constants(i, c_b), constants(i, c_f0), &
+                0.0_wp) - (state%ln_dt + ln_2 + state%ln_v0(i))
         end do
     end subroutine prepare
 
@@ -219,7 +228,7 @@ contains
         end if
         do i = 1, block%n
             now%at%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - state%b_over_a(i) &
-                * ln_theta(i)
+                * (now%w_0(i) + ln_theta(i))
             now%at%z(i) = max(min(now%at%z(i), now%high(i)), now%low(i))
         end do
     end subroutine start
@@ -238,8 +247,8 @@ contains
         integer :: i
 
         do i = 1, block%n
-            u(i) = u_of(now%u_0(i), now%at%z(i), state%b_over_a(i), &
-                now%at%ln_theta(i))
+            u(i) = u_of(now%u_0(i), now%at%z(i), state%b_over_a(i), now%w_0(i) &
+                + now%at%ln_theta(i))
         end do
         do i = 1, block%n
             e_u(i) = exp(min(u(i), far))
