@@ -48,8 +48,13 @@ class Target:
         """Noise like the record's."""
         if self.wander.size == 0:
             return rng.normal(scale=self.analysis.noise, size=size)
-        start = rng.integers(self.wander.size)
-        return rng.choice((-1.0, 1.0)) * np.resize(np.roll(self.wander, -start)[::rng.choice((-1, 1))], size)
+        # In pieces of about a cycle: the whole has no mean at any phase, which would leave the mean cycle without noise.
+        period = self.analysis.period / self.analysis.step
+        pieces: list[np.ndarray] = []
+        while sum(map(len, pieces)) < size:
+            start, length = rng.integers(self.wander.size), 1 + int(rng.uniform(0.5, 2.5) * period)
+            pieces.append(rng.choice((-1.0, 1.0)) * self.wander.take(np.arange(start, start + length), mode='wrap'))
+        return np.concatenate(pieces)[:size]
 
     def of_simulation(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
         """The features of a simulation; None where it shows too few events."""

@@ -266,7 +266,8 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     slope, bent = problem.jacobian(candidate)
     misfit = problem.misfit(problem.evaluate('full', [candidate])[0])
     inverse = np.linalg.pinv(slope, rcond=1e-9)
-    covariance = np.cov(inverse @ replicas(problem, candidate, REPLICAS), ddof=0).reshape(2 * (candidate.size,))
+    by_noise = replicas(problem, candidate, REPLICAS)
+    covariance = np.cov(inverse @ by_noise, ddof=0).reshape(2 * (candidate.size,))
     covariance += along_valley(problem, candidate, slope, 0) + along_valley(problem, candidate, slope, 1)
     covariance += (inverse * _floors(problem.targets)**2) @ inverse.T
     freedom = misfit.size - candidate.size
@@ -286,7 +287,7 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     undetermined = [name for name, s in zip(names, deviation) if not s <= UNDETERMINED]
     warnings = [warning for target in problem.targets for warning in target.analysis.warnings]
     warnings += [stopped] if stopped else []
-    warnings += _remarks(problem, candidate, bent, misfit)
+    warnings += _remarks(problem, candidate, bent, misfit, by_noise)
     return Fit(values, intervals, correlation, undetermined, _by_feature(problem.targets, misfit), warnings,
                problem.limits.count, problem.settings(candidate), tuple(problem.targets), problem, candidate)
 
@@ -318,8 +319,8 @@ def _by_feature(targets: Sequence[Target], misfit: np.ndarray) -> dict[str, dict
     return found
 
 
-def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: np.ndarray) -> list[str]:
-    """What a careful reader of the result should know."""
+def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: np.ndarray, by_noise: np.ndarray) -> list[str]:
+    """What a careful reader of the result should know. by_noise: misfits that noise makes, one column a replica."""
     remarks = []
     for constant, x, high, bend in zip(problem.constants, candidate, problem.high, bent):
         if bend > 0.5:
@@ -329,7 +330,7 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
             remarks.append(f'{constant.name} ends at its bound: widen it, or question the model')
     first = 0
     for target in problem.targets:
-        part = misfit[first:first + target.values.size]
+        features = slice(first, first + target.values.size)
         first += target.values.size
         name = target.analysis.record.name
         slider = problem.settings(candidate, target).get('slider', {})
@@ -344,12 +345,13 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
         if target.wander.size:
             remarks.append(f'{name}: from cycle to cycle the force differs by {np.std(target.wander):.3g}, from sample to sample '
                            f'by {target.analysis.noise:.3g}: its noise lasts; errors are those of such noise')
-        remarks += _misfit_remarks(problem, candidate, target, part)
+        remarks += _misfit_remarks(problem, candidate, target, misfit[features], by_noise[features])
     return remarks
 
 
-def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, misfit: np.ndarray) -> list[str]:
-    """Does the model explain the record? misfit: of this record's features, in standard deviations."""
+def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, misfit: np.ndarray,
+                    by_noise: np.ndarray) -> list[str]:
+    """Does the model explain the record? misfit, by_noise: of this record's features, in standard deviations."""
     name, whole = target.analysis.record.name, np.sqrt(np.mean(misfit**2))
     if whole > 5.0:
         told = compare(problem, candidate, target.analysis)
@@ -359,9 +361,10 @@ def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, mis
     names = np.array(target.names)
     parts = {feature: np.sqrt(np.mean(misfit[names == feature]**2)) for feature in dict.fromkeys(target.names)}
     worst = max(parts, key=parts.get)
-    if whole > UNEXPLAINED or (parts[worst] > 1.5 * UNEXPLAINED and np.count_nonzero(names == worst) > 1):
+    noise = np.sum(by_noise**2, axis=0)
+    if misfit @ misfit > noise.mean() + UNEXPLAINED * noise.std():
         return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '
-                'does not follow all of this record; the intervals are the wider for it']
+                'does not follow all of this record, or the search has not found the best constants; the intervals are the wider for it']
     return []
 
 
@@ -389,7 +392,7 @@ def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) 
             'units of time or force (time_factor, force_factor), the stiffness or the velocity are not those of the record')
 
 
-UNEXPLAINED = 2.0    # standard deviations left over
+UNEXPLAINED = 7.0    # standard deviations of the squared misfit that noise makes, whose tail is long
 WRONG_UNITS = 5.0    # times faster, or slower, than the rig's numbers say
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 import stickslip
 from stickslip import _fit_command
+from stickslip._features import make_target
 from stickslip._records import analyse, find_falls
 
 TRUE = {'mu_s': 0.4, 'mu_k': 0.2}
@@ -170,6 +171,16 @@ class Fit(unittest.TestCase):
             low, high = found.intervals[name]
             self.assertLess(abs(np.log(found.values[name] / true)), 1.3 * 0.5 * np.log(high / low), str(found))
         self.assertLess(max(found.misfit['record'].values()), 2.5)
+
+    def test_noise_that_lasts_has_its_part_in_mean_cycles(self):
+        """Pieces of it must not cancel out over the cycles, as the whole does."""
+        white = np.random.default_rng(4).normal(size=self.time.size + 500)
+        lasting = np.convolve(white, 0.97**np.arange(500) * np.sqrt(1 - 0.97**2), 'valid')[:self.time.size]
+        target = make_target(analyse(stickslip.Record(self.time, synthetic(noise=0.0)[1] + 0.04 * lasting)))
+        count, period = len(target.analysis.falls) - 1, round(target.analysis.period / target.analysis.step)
+        draws = [target.draw_noise(np.random.default_rng(seed), count * period).reshape(count, period).mean(axis=0)
+                 for seed in range(40)]
+        self.assertGreater(np.std(draws), 0.75 * 0.04 / np.sqrt(count))
 
     def test_a_checkpoint_of_other_times_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
