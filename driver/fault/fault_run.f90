@@ -200,7 +200,6 @@ contains
         real(dp) :: header(own_numbers + size(live%records%sizes())), &
             columns(live%here%n, live%steps%columns() + 2)
         integer :: n
-        logical :: failed
 
         call read_checkpoint(live%base // '.checkpoint', together, live%here%part, &
             live%here%plan%fingerprint, header, columns, problem)
@@ -226,10 +225,15 @@ contains
         end associate
         if (live%here%plan%fields > 0) call live%fields%go_on(live%here, together, live%base, &
             int(header(14), int64))
-        call live%records%go_on(header(own_numbers + 1:))
-        failed = together%any_of(live%records%failed()) .or. live%fields%parts%failed
-        if (failed) problem = 'the files ' // live%base &
-            // '_*.csv are not those that the checkpoint goes on with'
+        if (live%fields%parts%failed) then
+            problem = 'the files ' // live%base // '_fields*'
+        else
+            call live%records%go_on(header(own_numbers + 1:))
+            if (together%any_of(live%records%failed())) problem = 'the files ' // live%base &
+                // '_*.csv'
+        end if
+        if (len(problem) > 0) problem = problem &
+            // ' are not those that the checkpoint goes on with'
     end subroutine take_checkpoint
 
     !> What makes results doubtful, on standard error.

@@ -254,6 +254,19 @@ class Restart(FaultTest):
         self.assertIn('--resume goes on', run.communicate()[1])
         self.assertEqual(run.returncode, 1)
 
+    def test_files_that_are_not_those_of_the_checkpoint_are_told_by_name(self):
+        name = self.write(PLANE.replace('3e8', '1e13').replace('fields = 5', 'fields = 1'))
+        run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
+        while not list((self.place / 'case_out').glob('case_fields.*')) and run.poll() is None:
+            time.sleep(0.01)
+        run.send_signal(signal.SIGINT)
+        run.communicate()
+        for pattern, told in (('case_fields_000001.*', 'case_fields*'), ('case_events.csv', 'case_*.csv')):
+            path, = (self.place / 'case_out').glob(pattern)
+            path.rename(self.place / 'aside')
+            self.assertIn(f'the files case_out/{told} are not those', self.run_fault(name, '--resume', expect=1).stderr)
+            (self.place / 'aside').rename(path)
+
     def test_another_input_or_a_damaged_checkpoint_is_refused(self):
         name = self.write(LONG)
         run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
