@@ -269,23 +269,20 @@ contains
 
         status = friction_bad_increment
         stiffness = trial%stiffness
-        trial%dt = motion%dt
         trial%distance = sqrt(trial%q(1)**2 + (plane%squeeze * trial%q(2))**2)
         blur = max(1.0_wp, plane%squeeze) * motion%blur
         if (trial%distance <= max(near_underflow, blur)) call measure(trial%q, plane%squeeze, &
             max(least, motion%blur), trial%distance)
         if (max(trial%distance, stiffness * trial%distance) > largest) return
         status = friction_ok
-        call surface%rest(stiffness * trial%distance, trial%pressure, trial%dt, old%inner, &
+        call surface%rest(stiffness * trial%distance, trial%pressure, motion%dt, old%inner, &
             new%inner, strength)
-        trial%start = old%inner
         if (surface%follows_path) then   ! in the axes where the ellipse is a circle
             call find_reloading([old%u_et(1), plane%squeeze * old%u_et(2)], &
                 [trial%q(1), plane%squeeze * trial%q(2)], strength / stiffness, &
                 max(old%inner%r, least_ratio) * new%inner%mu / stiffness, motion%blur_start, &
                 reload)
             reload%by_q(2) = plane%squeeze * reload%by_q(2)
-            trial%start%r = reload%share * trial%start%r
             strength = max(reload%share, least_ratio / max(old%inner%r, least_ratio)) * strength
         end if
         limit = strength * (1.0_wp + verge)
@@ -305,6 +302,9 @@ contains
             answer%by_q(2, 2) = stiffness
             answer%by_pressure = 0.0_wp
         else
+            trial%dt = motion%dt
+            trial%start = old%inner
+            if (surface%follows_path) trial%start%r = reload%share * trial%start%r
             call slip_update(surface, plane, trial, reload, old, new, answer, status)
         end if
     end subroutine tangential_update
