@@ -68,7 +68,9 @@ contains
         do i = 1, lanes
             call mean_growth(pressed(i), left(i), mean, fall)
             block%r_rest(i) = block%r(i) * left(i) + older * mean
-            if (abs(pressed(i)) >= most_pressing) block%valid(i) = -1.0_wp
+            if (abs(pressed(i)) + constants(i, c_alpha) / constants(i, c_b) >= most_pressing) then
+                block%valid(i) = -1.0_wp
+            end if
         end do
     end subroutine rest_rate_state
 
