@@ -134,6 +134,7 @@ class StopAndGo(LongRun):
         process = self.start()
         self.wait_for('case_out/case.csv', 100)
         process.send_signal(signal.SIGSTOP)   # both signals wait until it goes on
+        os.waitpid(process.pid, os.WUNTRACED)
         process.send_signal(signal.SIGTERM)
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGCONT)

@@ -29,6 +29,13 @@ void (*signal(int number, void (*handler)(int)))(int)
     return sigaction(number, &action, &before) ? SIG_ERR : before.sa_handler;
 }
 
+/* No exception is seen: of the variants of a statement a compiler evaluates more than the one that counts. */
+void __ieee_exceptions_MOD_ieee_get_flag(const int *flag, int *raised)
+{
+    (void)flag;
+    *raised = 0;
+}
+
 __attribute__((constructor)) static void start(void)
 {
     const char *number = getenv("STICKSLIP_MUTANT"), *seconds = getenv("STICKSLIP_SECONDS");
