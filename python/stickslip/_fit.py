@@ -17,7 +17,19 @@ from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_block
 from ._namelist import InputError
 from ._records import LEAST_EVENTS, Analysis, Record, analyse
 from ._run import check_runs, spring_force
-from ._search import Constant, Journal, Limits, NoStickSlip, Problem, Simulate, along_valley, replicas, search, set_times
+from ._search import (
+    Constant,
+    Journal,
+    Limits,
+    NoStickSlip,
+    Problem,
+    Simulate,
+    along_valley,
+    checked_bounds,
+    replicas,
+    search,
+    set_times,
+)
 
 NORMAL = 1.959964       # standard deviations of a 95 % interval
 UNDETERMINED = 0.2      # standard deviation of a constant's logarithm from which on the records do not determine it
@@ -200,33 +212,30 @@ def _constant(name: str, base: dict, bounds: float | Mapping[str, tuple[float, f
     """A free constant with its bounds."""
     if name == 'velocity_factor':
         own = bounds.get(name, VELOCITY_FACTOR) if isinstance(bounds, Mapping) else VELOCITY_FACTOR
-        return Constant(name, 'drive', 'velocity', *_checked_bounds(name, own), is_factor=True)
+        return _bounded(name, 'drive', 'velocity', own, is_factor=True)
     group, _, key = name.lower().rpartition('.')
     group = group or 'friction'
     if isinstance(bounds, Mapping):
         if name not in bounds:
             raise InputError(f'fit: no bounds for {name}')
-        return Constant(name, group, key, *_checked_bounds(name, bounds[name]))
+        return _bounded(name, group, key, bounds[name])
     value = base.get(group, {}).get(key)
     if not _is_number(value):
         raise InputError(f'fit: {name} has no value in the input that bounds could be taken about: give bounds by name')
     if not _is_number(bounds) or not bounds > 1.0:
         raise InputError(f'fit: bounds = {bounds!r}: a factor above 1 is needed, or lower and upper bounds by name')
-    return Constant(name, group, key, *_checked_bounds(name, (value / bounds, value * bounds)))
+    return _bounded(name, group, key, (value / bounds, value * bounds))
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
-def _checked_bounds(name: str, bounds: Sequence[float]) -> tuple[float, float]:
+def _bounded(name: str, group: str, key: str, bounds: Any, is_factor: bool = False) -> Constant:
     try:
-        low, high = map(float, bounds)
-    except (TypeError, ValueError):
-        raise InputError(f'fit: bounds of {name}, {bounds!r}: a lower and an upper one are needed') from None
-    if not 0.0 < low < high < np.inf:
-        raise InputError(f'fit: bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
-    return low, high
+        return Constant(name, group, key, *checked_bounds(name, bounds), is_factor)
+    except ValueError as fault:
+        raise InputError(f'fit: {fault}') from None
 
 
 def _check_arguments(free: Sequence[str], bounds: Any, **counts: int) -> None:

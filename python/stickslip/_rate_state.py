@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ._optional import needed
 from ._run import series
+from ._search import checked_bounds
 from .laws import RateAndState
 
 NAMES = ('a', 'b', 'd_c', 'stiffness')
@@ -128,13 +129,7 @@ def _limits(record: _Steps, given: Mapping[str, tuple[float, float]]) -> dict[st
         raise ValueError(f'fit_rate_and_state: no constants {", ".join(sorted(unknown))}; there are {", ".join(NAMES)}')
     limits = record.default_bounds()
     for name, bounds in given.items():
-        try:
-            low, high = map(float, bounds)
-        except (TypeError, ValueError):
-            raise ValueError(f'bounds of {name}, {bounds!r}: a lower and an upper one are needed') from None
-        if not 0.0 < low < high < np.inf:
-            raise ValueError(f'bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
-        limits[name] = low, high
+        limits[name] = checked_bounds(name, bounds)
     return limits
 
 

@@ -37,6 +37,17 @@ class NoStickSlip(Exception):
     """No candidate shows as many events as a record."""
 
 
+def checked_bounds(name: str, bounds: Any) -> tuple[float, float]:
+    """Bounds of a constant as numbers; ValueError if they are none."""
+    try:
+        low, high = map(float, bounds)
+    except (TypeError, ValueError):
+        raise ValueError(f'bounds of {name}, {bounds!r}: a lower and an upper one are needed') from None
+    if not 0.0 < low < high < np.inf:
+        raise ValueError(f'bounds of {name}, {low:g} and {high:g}: 0 < lower < upper is needed')
+    return low, high
+
+
 @dataclasses.dataclass(frozen=True)
 class Constant:
     """A constant to be found."""
