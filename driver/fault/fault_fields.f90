@@ -3,7 +3,7 @@
 module fault_fields
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_problem, only : fault, fault_state
-    use field_file, only : field_parts, whole_words
+    use field_file, only : field_parts, field_record_bytes, whole_words
     use platform, only : rename_file
     use processes, only : team
     use text_file, only : output_file
@@ -18,7 +18,7 @@ module fault_fields
     type :: fault_field_file
         type(field_parts) :: parts
     contains
-        procedure :: create, go_on, write_record, save
+        procedure :: create, go_on, write_record, save, bytes
         procedure, private :: prepare, describe
     end type fault_field_file
 
@@ -98,6 +98,16 @@ contains
         end if
         if (together%rank == 0) call self%parts%withdraw()
     end subroutine save
+
+    !> Of all records so far.
+    pure function bytes(self, here) result(total)
+        class(fault_field_file), intent(in) :: self
+        type(fault), intent(in) :: here
+        integer(int64) :: total
+
+        total = self%parts%records * field_record_bytes(int(here%plan%nx, int64) * here%plan%nz, &
+            size(names))
+    end function bytes
 
     !> What one process has found is so for all; the first one's places are.
     function agree(self, together) result(failed)

@@ -12,7 +12,6 @@ module fault_recorder
 
     public :: recorder
 
-    integer, parameter :: most_depths = 200   !! of a contour
     character(len=*), parameter :: event_columns = &
         'onset,duration,peak_slip_rate,largest_slip,mean_slip,potency,first_cell'
 
@@ -27,7 +26,7 @@ module fault_recorder
         logical :: writes = .false.              !! this process does
         logical, private :: draws_contours = .false.
     contains
-        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes
+        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes, bytes
         procedure, private :: write_rows, write_contours, contours_until, write_event
     end type recorder
 
@@ -114,6 +113,15 @@ contains
         bytes = real([self%global%bytes, self%events%bytes, self%contours%bytes, &
             self%stations%bytes], dp)
     end function sizes
+
+    !> Of all files so far; 0 on all processes but the first.
+    pure function bytes(self) result(total)
+        class(recorder), intent(in) :: self
+        integer(int64) :: total
+
+        total = self%global%bytes + self%events%bytes + self%contours%bytes &
+            + sum(self%stations%bytes)
+    end function bytes
 
     !> The first row, of the state at the start.
     subroutine begin(self, here, together, state, watch)
@@ -223,10 +231,9 @@ contains
         real(dp), intent(in) :: last             !! [T]
         real(dp) :: dt, u, own(here%n)
         real(dp), dimension(here%plan%nz) :: slip, rate, rate_before
-        integer :: stride, k
+        integer :: k
 
         dt = state%time - self%time_before
-        stride = (here%plan%nz + most_depths - 1) / most_depths
         do while (self%next_contour <= last)
             u = (self%next_contour - self%time_before) / dt
             own = self%slip_before + u**2 * (3.0_dp - 2.0_dp * u) * (state%slip &
@@ -236,7 +243,7 @@ contains
             call together%gather(self%rate_before, here%part%counts, rate_before)
             call together%gather(state%rate, here%part%counts, rate)
             rate = (1.0_dp - u) * log10_of(rate_before) + u * log10_of(rate)
-            do k = 1, here%plan%nz, stride
+            do k = 1, here%plan%nz, here%plan%contour_stride()
                 if (self%writes) call self%contours%write_line(full_row([self%next_contour, &
                     merge(1.0_dp, 0.0_dp, in_event), here%plan%z_of(k), slip(k), rate(k)]))
             end do

@@ -14,6 +14,7 @@ module fault_run
     use platform, only : interrupted, remove_file, report, seconds
     use processes, only : team
     use progress_bar, only : progress
+    use text_file, only : gigabyte
     implicit none
     private
 
@@ -139,9 +140,11 @@ contains
         type(team), intent(in) :: together
         real(dp), intent(inout) :: last   !! clock at the last checkpoint
         character(len=:), allocatable, intent(inout) :: problem
-        logical :: stop_now
+        logical :: stop_now, full
 
-        stop_now = together%any_of(interrupted())
+        full = real(live%records%bytes() + live%fields%bytes(live%here), dp) > gigabyte &
+            * live%here%plan%table_limit   ! the first process knows
+        stop_now = together%any_of(full .or. interrupted())
         if (.not. stop_now) then
             if (mod(live%state%steps, int(steps_between_looks, int64)) /= 0) return
             if (.not. together%any_of(together%rank == 0 .and. seconds() - last &
@@ -149,8 +152,11 @@ contains
         end if
         last = seconds()
         call leave_checkpoint(live, together, problem)
-        if (stop_now .and. len(problem) == 0) problem = &
-            'interrupted; stickslip fault with --resume goes on from here'
+        if (len(problem) > 0 .or. .not. stop_now) return
+        full = together%any_of(full)
+        problem = 'interrupted; stickslip fault with --resume goes on from here'
+        if (full) problem = 'the tables are as large as &output table_limit: resume the run with ' &
+            // 'a larger one'
     end subroutine look
 
     subroutine leave_checkpoint(live, together, problem)

@@ -8,8 +8,9 @@ program stickslip_fault
     use fault_settings, only : fault_plan
     use namelist_input, only : namelist_file, read_namelist_file
     use netcdf_table, only : read_netcdf_table
-    use platform, only : exit_program, hold_output, make_directory, report, watch_for_interrupts
+    use platform, only : exit_program, hold_output, report, watch_for_interrupts
     use processes, only : lacks_mpi, team
+    use result_files, only : prepare_output
     !$ use omp_lib, only : omp_set_num_threads
     implicit none
     integer, parameter :: exit_done = 0, exit_failed = 1, exit_bad_input = 2   ! of verb_common
@@ -47,8 +48,8 @@ program stickslip_fault
         call finish(exit_done)
     end if
     if (len(problem) == 0) then
-        if (.not. make_directory(directory)) problem = &
-            "stickslip: cannot write to the directory '" // directory // "'" // new_line('a')
+        call prepare_output(file, directory, stem, problem)
+        if (len(problem) > 0) problem = problem // new_line('a')
     end if
     if (together%any_of(len(problem) > 0)) then
         if (together%rank == 0) write (error_unit, '(a)', advance='no') problem

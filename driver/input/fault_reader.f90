@@ -6,17 +6,19 @@
 !> reader of &friction, as if they stood in the input, so that each has its law's rules.
 module fault_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use archive_file, only : mix, mix_text
+    use archive_file, only : mix
     use csv_table, only : table_reader
     use fault_settings, only : fault_plan
     use friction_mod, only : friction_facts, onset_drops
     use grid_map, only : map_on_grid
+    use input_fingerprint, only : listing_fingerprint
     use input_kind, only : refuse_other_verb
     use law_input, only : read_friction, refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
     use namelist_parser, only : namelist_entry
     use number_text, only : full_row
     use profile_reader, only : joined, profile, put_number, read_map, take_profiles
+    use text_file, only : gigabyte
     use unit_reader, only : read_units
     implicit none
     private
@@ -279,6 +281,8 @@ contains
         end if
         call file%get_real('output', 'seismic_rate', plan%seismic_rate, above(0.0_dp), &
             default=1.0e-3_dp)
+        call file%get_real('output', 'table_limit', plan%table_limit, above(0.0_dp), &
+            default=10.0_dp)
         call read_contours(file, plan)
         call file%get_integer('output', 'interval', plan%interval, at_least(1.0_dp), default=1)
         call file%get_integer('output', 'fields', plan%fields, at_least(0.0_dp), default=0)
@@ -289,6 +293,7 @@ contains
     subroutine read_contours(file, plan)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(inout) :: plan
+        real(dp), parameter :: least_part = 1.0e-12_dp   !! of t_end: times differ in their digits
         real(dp), allocatable :: contours(:)
 
         if (plan%geometry /= 'antiplane_half') then
@@ -297,22 +302,41 @@ contains
             return
         end if
         call file%get_reals('output', 'slip_contours', contours, above(0.0_dp))
-        if (size(contours) == 2) then
-            plan%contours = contours
-        else if (size(contours) > 0) then
+        if (size(contours) == 0) return
+        if (size(contours) /= 2) then
             call file%reject('output', 'slip_contours', &
                 'takes two values: time between contours, and that during events')
+        else if (any(contours < least_part * plan%t_end)) then
+            call file%reject('output', 'slip_contours', 'must be at least 1e-12 of t_end')
+        else
+            plan%contours = contours
+            call check_contours(file, plan)
         end if
     end subroutine read_contours
 
-    !> Another number for any input with other results, whatever the clock of the checkpoints.
+    !> Those between events alone may be more than the files may hold.
+    subroutine check_contours(file, plan)
+        type(namelist_file), intent(inout) :: file
+        type(fault_plan), intent(in) :: plan
+        real(dp), parameter :: row_bytes = 120.0_dp   !! five numbers
+        real(dp) :: rows
+        character(len=80) :: text
+
+        if (plan%nz < 2) return   ! refused before
+        rows = plan%t_end / plan%contours(1) * (plan%nz / plan%contour_stride())
+        if (rows * row_bytes <= gigabyte * plan%table_limit) return
+        write (text, '(a, es9.2, a, es9.2)') 'makes a table of', rows * row_bytes / gigabyte, &
+            ' GB, more than table_limit,', plan%table_limit
+        call file%reject('output', 'slip_contours', trim(text))
+    end subroutine check_contours
+
+    !> Another number for any input with other results.
     pure function fingerprint_of(listing, plan) result(number)
         character(len=*), intent(in) :: listing   !! of the input
         type(fault_plan), intent(in) :: plan
         integer(int64) :: number
 
-        number = 0
-        call mix_text(listing, number)
+        number = listing_fingerprint(listing)
         call mix_map(plan%constants, number)
         call mix_map(plan%initial, number)
     end function fingerprint_of

@@ -35,6 +35,8 @@ module namelist_input
         type(namelist_entry), allocatable :: entries(:)
         type(group_seen), allocatable :: groups(:)
         type(fault), allocatable :: faults(:)
+        type(value_token), allocatable :: files(:)   !! paths of this file and of all that it may
+                                                     !! name: its quoted values
         logical, private :: broken = .false.     !! the text could not be read to its end
         integer, private :: not_listed = 0       !! faults that are only counted
         type(known_key), allocatable, private :: keys(:)
@@ -86,6 +88,7 @@ contains
         call move_alloc(parsed%entries, file%entries)
         call move_alloc(parsed%groups, file%groups)
         call move_alloc(parsed%faults, file%faults)
+        call note_files(file)
         allocate (file%keys(32))
     end subroutine take_text
 
@@ -113,6 +116,31 @@ contains
             if (self%groups(i)%name == group) line = self%groups(i)%line
         end do
     end function line_of_group
+
+    subroutine note_files(self)
+        class(namelist_file), intent(inout) :: self
+        integer :: i, j, n
+
+        n = 1
+        do i = 1, size(self%entries)
+            n = n + count(self%entries(i)%values%quoted)
+        end do
+        allocate (self%files(n))
+        self%files(1)%text = self%name
+        n = 1
+        do i = 1, size(self%entries)
+            do j = 1, size(self%entries(i)%values)
+                associate (value => self%entries(i)%values(j))
+                    if (.not. value%quoted) cycle
+                    n = n + 1
+                    self%files(n)%text = value%text
+                    if (index(value%text, '@') == 1) self%files(n)%text = value%text(2:)
+                end associate
+                if (len(self%files(n)%text) > 0) self%files(n)%text = &
+                    self%beside(self%files(n)%text)
+            end do
+        end do
+    end subroutine note_files
 
     !> A path as seen from the directory of the file.
     pure function beside(self, path) result(full)

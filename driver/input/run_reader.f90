@@ -1,17 +1,17 @@
 !> Reads what a run is told to do: the groups and keys of the input file, their defaults and rules.
 module run_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use archive_file, only : mix, mix_text
+    use archive_file, only : mix
     use block_reader, only : check_blocks_at_start, read_block_friction
     use chain_reader, only : read_chain
     use drive_reader, only : read_drive
     use friction_mod, only : facts => law_facts, friction_facts, onset_gradual
+    use input_fingerprint, only : listing_fingerprint
     use law_facts, only : has_r, typical_strength
     use law_input, only : refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
     use unit_reader, only : read_units
-    use whole_file, only : next_line
     implicit none
     private
 
@@ -104,22 +104,8 @@ contains
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
         type(settings), intent(in) :: run         !! files that they name included
         integer(int64) :: number
-        character(len=19), parameter :: without(5) = ['&output checkpoint ', &
-            '&output table_limit', '&output length_unit', '&output force_unit ', &
-            '&output time_unit  ']
-        integer :: first, last, line, i
 
-        number = 0
-        last = -1
-        line = 0
-        do while (last < len(listing) - 1)
-            call next_line(listing, first, last, line)
-            associate (text => listing(first:last + 1))
-                if (all([(index(text, trim(without(i)) // ' ') /= 1, i = 1, size(without))])) then
-                    call mix_text(text, number)
-                end if
-            end associate
-        end do
+        number = listing_fingerprint(listing)
         if (allocated(run%chain%load)) call mix(transfer(run%chain%load, [number]), number)
         if (allocated(run%chain%constants)) call mix(transfer(run%chain%constants, [number]), &
             number)

@@ -31,11 +31,12 @@ module fault_settings
                                                     !! during events; 0: none [T]
         integer :: interval = 1                     !! steps between two rows
         integer :: fields = 0                       !! steps between two frames of fields; 0: none
+        real(dp) :: table_limit = 10.0_dp           !! that the files may take on disk [GB]
         type(units) :: units                        !! names for pictures
         real(dp) :: checkpoint = 60.0_dp            !! clock between two checkpoints [s]
         integer(int64) :: fingerprint = 0           !! another one for any input with other results
     contains
-        procedure :: dx, dz, cell_area, damping, x_of, z_of
+        procedure :: dx, dz, cell_area, damping, x_of, z_of, contour_stride
     end type fault_plan
 
 contains
@@ -87,5 +88,14 @@ contains
 
         z = (k - 0.5_dp) * (self%width / self%nz)
     end function z_of
+
+    !> Cells from one depth of a contour to the next: there are 200 depths at most.
+    pure function contour_stride(self) result(stride)
+        class(fault_plan), intent(in) :: self
+        integer :: stride
+        integer, parameter :: most_depths = 200
+
+        stride = (self%nz + most_depths - 1) / most_depths
+    end function contour_stride
 
 end module fault_settings

@@ -11,8 +11,7 @@ module recorder
     use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : slip_event
-    use table_size, only : gigabyte
-    use text_file, only : output_file
+    use text_file, only : gigabyte, output_file
     use thinned_series, only : thinned
     implicit none
     private

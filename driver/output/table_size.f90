@@ -4,12 +4,11 @@ module table_size
     use chain_fields, only : chain_record_bytes
     use run_rows, only : series_size
     use run_settings, only : settings
+    use text_file, only : gigabyte
     implicit none
     private
 
     public :: check_table_size, expected_bytes
-
-    real(dp), parameter, public :: gigabyte = 1.0e9_dp   !! [bytes]
 
 contains
 

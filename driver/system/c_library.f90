@@ -7,8 +7,8 @@ module c_library
 
     public :: c_access, c_close, c_end, c_execv, c_exit, c_fclose, c_ferror, c_fflush, c_fopen, &
         c_fork, c_fread, c_fwrite, c_isatty, c_kill, c_mkdir, c_pipe, c_poll, c_puts, c_read, &
-        c_readlink, c_remove, c_rename, c_signal, c_strlen, c_strtod, c_truncate, c_wait, &
-        c_waitpid, c_write
+        c_readlink, c_realpath, c_remove, c_rename, c_signal, c_strlen, c_strtod, c_truncate, &
+        c_wait, c_waitpid, c_write
 
     interface
         integer(c_int) function c_execv(path, arguments) bind(C, name='execv')
@@ -26,6 +26,14 @@ module c_library
             character(kind=c_char), intent(inout) :: buffer(*)
             integer(c_size_t), value, intent(in) :: length
         end function c_readlink
+
+        !> `resolved` has room for PATH_MAX characters. The result is it, or null.
+        type(c_ptr) function c_realpath(path, resolved) bind(C, name='realpath')
+            import :: c_char, c_ptr
+            implicit none
+            character(kind=c_char), intent(in) :: path(*)
+            character(kind=c_char), intent(inout) :: resolved(*)
+        end function c_realpath
 
         integer(c_int) function c_isatty(descriptor) bind(C, name='isatty')
             import :: c_int

@@ -1,17 +1,17 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
-    use, intrinsic :: iso_c_binding, only : c_char, c_funloc, c_funptr, c_int, c_loc, &
-        c_null_char, c_null_ptr, c_ptr, c_size_t
+    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_funloc, c_funptr, c_int, &
+        c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_mkdir, c_puts, &
-        c_readlink, c_remove, c_rename, c_signal, c_truncate
+        c_readlink, c_realpath, c_remove, c_rename, c_signal, c_truncate
     use printable_text, only : replaced
     implicit none
     private
 
     public :: cores, exit_program, have_command, hold_output, interrupted, is_directory, &
-        is_terminal, make_directory, program_beside, remove_file, rename_file, replace_program, &
-        seconds, shell_word, truncate_file, watch_for_interrupts
+        is_terminal, make_directory, plain_path, program_beside, remove_file, rename_file, &
+        replace_program, seconds, shell_word, truncate_file, watch_for_interrupts
 
     ! Module variables, because a signal handler has no arguments to leave its message in.
     logical, volatile :: was_interrupted = .false.
@@ -134,6 +134,18 @@ contains
         ignored = c_mkdir(path // c_null_char, for_all)
         made = c_access(path // '/.' // c_null_char, write_and_search) == 0
     end function make_directory
+
+    !> The path of a file or directory from the root on, without links; empty if there is none.
+    function plain_path(path) result(full)
+        character(len=*), intent(in) :: path
+        character(len=:), allocatable :: full
+        character(kind=c_char, len=4096) :: resolved
+
+        full = ''
+        resolved = ' '
+        if (.not. c_associated(c_realpath(path // c_null_char, resolved))) return
+        full = resolved(:index(resolved, c_null_char) - 1)
+    end function plain_path
 
     !> The path of a program in the directory of this one; its name alone where that is unknown.
     function program_beside(name) result(path)

@@ -3,13 +3,15 @@
 module text_file
     use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_null_ptr, c_ptr, &
         c_size_t
-    use, intrinsic :: iso_fortran_env, only : int64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use c_library, only : c_fclose, c_fflush, c_fopen, c_fwrite
     use platform, only : truncate_file
     implicit none
     private
 
     public :: output_file
+
+    real(dp), parameter, public :: gigabyte = 1.0e9_dp   !! [bytes]
 
     !> A file that is written line by line. After the first failure nothing more is written; what is
     !> written to a file that was never created is dropped.

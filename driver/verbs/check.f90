@@ -14,7 +14,8 @@ module check
     use run_settings, only : settings
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
-    use table_size, only : check_table_size, expected_bytes, gigabyte
+    use table_size, only : check_table_size, expected_bytes
+    use text_file, only : gigabyte
     use verb_common, only : exit_bad_input, exit_done, has_faults, is_readable
     implicit none
     private

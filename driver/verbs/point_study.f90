@@ -54,7 +54,7 @@ contains
         call read_point_settings(file, run)
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem
-        if (.not. directory_is_ready(wanted%output)) return
+        if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         call records%start(base // '.csv', run%loading%ndir, internal_variable(run%props), &
             run%tangent)
         if (records%file%failed) then

@@ -48,7 +48,7 @@ contains
         if (.not. is_for('stability', wanted%input, file)) return
         call read_runs(file, plan)
         if (has_faults(file)) return
-        if (.not. directory_is_ready(wanted%output)) return
+        if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         base = wanted%output // '/' // wanted%stem // '_stability'
         call into%rows%create(base // '.csv')
         call into%rows%write_line(key_names(plan%axes) // stability_columns)

@@ -48,7 +48,7 @@ contains
             return
         end if
         base = wanted%output // '/' // wanted%stem
-        if (.not. directory_is_ready(wanted%output)) return
+        if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         call start_run(run, live)
         call records%prepare(run, base)
         if (wanted%resume) then

@@ -7,7 +7,7 @@ module sweep
     use friction_mod, only : friction_version
     use namelist_input, only : namelist_file
     use number_text, only : whole_text
-    use platform, only : cores, make_directory, rename_file, report
+    use platform, only : cores, rename_file, report
     use progress_bar, only : progress
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
@@ -19,7 +19,8 @@ module sweep
     use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
     use text_file, only : output_file
-    use verb_common, only : exit_bad_input, exit_done, exit_failed, has_faults, is_for
+    use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
+        has_faults, is_for
     implicit none
     private
 
@@ -43,6 +44,7 @@ contains
         if (.not. is_for('sweep', wanted%input, file)) return
         call read_plan(file, plan)
         if (has_faults(file)) return
+        if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         base = wanted%output // '/' // wanted%stem // '_sweep'
         call open_journal(wanted, base, plan, done, rows, problem)
         if (len(problem) > 0) then
@@ -140,10 +142,6 @@ contains
         do i = 1, size(rows)
             rows(i)%text = ''
         end do
-        if (.not. make_directory(wanted%output)) then
-            problem = "cannot write to the directory '" // wanted%output // "'"
-            return
-        end if
         input = 'stickslip ' // friction_version // new_line('a') // table_header(plan%axes) &
             // new_line('a') // plan%input
         call read_rows(base // '.journal', input, known, problem)

@@ -3,7 +3,7 @@ module verb_common
     use, intrinsic :: iso_fortran_env, only : error_unit
     use input_kind, only : refuse_other_verb
     use namelist_input, only : namelist_file, read_namelist_file
-    use platform, only : make_directory
+    use result_files, only : prepare_output
     implicit none
     private
 
@@ -47,14 +47,16 @@ contains
         if (any_faults) write (error_unit, '(a)', advance='no') file%describe_faults()
     end function has_faults
 
-    !> Makes the directory of the output, or says that it cannot be written to.
-    function directory_is_ready(name) result(ready)
-        character(len=*), intent(in) :: name
+    !> Makes the directory of the output, or says why the results cannot go there.
+    function directory_is_ready(directory, stem, file) result(ready)
+        character(len=*), intent(in) :: directory, stem
+        type(namelist_file), intent(in) :: file
         logical :: ready
+        character(len=:), allocatable :: problem
 
-        ready = make_directory(name)
-        if (.not. ready) write (error_unit, '(3a)') &
-            "stickslip: cannot write to the directory '", name, "'"
+        call prepare_output(file, directory, stem, problem)
+        ready = len(problem) == 0
+        if (.not. ready) write (error_unit, '(a)') problem
     end function directory_is_ready
 
     subroutine tell_failure(input, failure, base)

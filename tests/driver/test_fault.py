@@ -254,6 +254,15 @@ class Restart(FaultTest):
         self.assertIn('--resume goes on', run.communicate()[1])
         self.assertEqual(run.returncode, 1)
 
+    def test_run_stops_at_the_limit_of_its_tables_and_goes_on_with_a_larger_one(self):
+        self.run_fault(self.write(SMALL), '--output', 'whole', '--quiet')
+        limited = self.write(SMALL.replace('stations', 'table_limit = 3e-4, stations'))
+        for more in ((), ('--resume',)):
+            self.assertIn('as large as &output table_limit',
+                          self.run_fault(limited, '--output', 'parts', '--quiet', *more, expect=1).stderr)
+        self.write(SMALL.replace('stations', 'table_limit = 1, stations').replace('checkpoint = 0', 'checkpoint = 5'))
+        self.resume('case.nml', 1)
+
     def test_files_that_are_not_those_of_the_checkpoint_are_told_by_name(self):
         name = self.write(PLANE.replace('3e8', '1e13').replace('fields = 5', 'fields = 1'))
         run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
@@ -564,6 +573,8 @@ class Input(FaultTest):
             SMALL.replace("law = 'rate_and_state', a = '@a.csv', b = 0.015, d_c = 0.032, v0 = 1e-6, f0 = 0.6",
                           "law = 'coulomb', mu = 0.6").replace('rtol = 1e-4', "rtol = 1e-4, scheme = 'explicit'")))
         self.assertIn('two values', self.faults(SMALL.replace('3e8, 10', '3e8')))
+        self.assertIn('at least 1e-12 of t_end', self.faults(SMALL.replace('3e8, 10', '3e8, 1e-3')))
+        self.assertIn('GB, more than table_limit', self.faults(SMALL.replace('3e8, 10', '1, 10')))
 
     def test_faults_that_follow_from_others_are_not_told(self):
         for old, new, told in (('width = 40e3', 'width = 0', '&fault width = 0: must be > 0'),

@@ -509,6 +509,28 @@ class BadInput(Program):
         self.assertEqual(result.returncode, 2)
         self.assertNotEqual(result.stderr, '')
 
+    def test_no_verb_writes_over_what_it_reads(self):
+        drive = namelist({('drive', 'file'): "'READ'"}, [('drive', 'velocity')])
+        record = 'time,velocity\n0,1\n1,1\n'
+        for verb, name, text, table in (
+                ('run', 'case.csv', drive, record),
+                ('run', 'case_blocks.csv', namelist({('chain', 'n_blocks'): '3', ('chain', 'coupling'): '1',
+                                                     ('friction', 'mu_s'): "'@READ'"}), 'block,mu_s\n1,0.4\n3,0.5\n'),
+                ('point', 'case.csv', "&friction law = 'coulomb', alpha_n = 1, alpha_t = 1, mu = 0.5 /\n&point file = 'READ' /\n",
+                 'time,t_n,u_t1,u_t2\n0,0,0,0\n1,-1,1,0\n'),
+                ('stability', 'case_stability.csv', drive, record),
+                ('sweep', 'case_sweep.csv', drive + "&sweep key = 'slider%damping', values = 0, 0.1 /\n", record)):
+            (self.folder / 'data').mkdir()
+            (self.folder / 'data' / 'link.csv').symlink_to(f'../{name}')
+            (self.folder / name).write_text(table)
+            for given, output in ((name, '.'), (self.folder / name, self.folder), ('data/link.csv', 'data/..')):
+                result = self.run_text(text.replace('READ', str(given)), '--output', output, verb=verb)
+                self.assertEqual(result.returncode, 2, (verb, given, result.stderr))
+                self.assertIn(f"the results would overwrite the input '{given}'", result.stderr)
+                self.assertEqual((self.folder / name).read_text(), table)
+            self.assertNotIn('overwrite', self.run_text(text.replace('READ', name), '--no-plot', verb=verb).stderr)
+            shutil.rmtree(self.folder / 'data')
+
     def test_bad_usage_shows_the_usage(self):
         for arguments in ([], ['walk'], ['run'], ['run', 'a.nml', 'b.nml'], ['run', '--fast', 'a.nml'],
                           ['run', 'a.nml', '--output'], ['check', 'a.nml', '--no-plot'],
