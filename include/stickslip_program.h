@@ -32,11 +32,30 @@ int stickslip_run(const char *name, const char *text, stickslip_watch watch, voi
  * STICKSLIP_FAILED where nothing slides steadily. */
 int stickslip_stability(const char *name, const char *text, stickslip_result **result);
 
+/* Takes namelists apart, as the program reads them: the report "groups" is a JSON object of groups, each an object of keys with
+ * a number, text or truth value or a list of them; "text" is the content in UTF-8 without a byte-order mark. What keys there
+ * may be, and with which values, stickslip_run alone knows.
+ *   name      of the input, for messages
+ *   content   of a file: UTF-8, UTF-16 or Latin-1, with any line ends
+ *   bytes     size of the content, >= 0
+ *   result    as above
+ * Returns STICKSLIP_DONE, STICKSLIP_BAD_INPUT or STICKSLIP_NO_INPUT. */
+int stickslip_groups(const char *name, const char *content, int64_t bytes, stickslip_result **result);
+
+/* Takes columns of numbers from a table, as the program reads measured files (docs/driver.md): the table "columns" has them in
+ * the order of the names, without names of its own.
+ *   content, bytes   as above
+ *   n                number of columns, >= 1
+ *   names            theirs, as the file has them or without regard to case or to a unit behind them
+ *   result           as above; the report "faults" tells what is wrong, a line each
+ * Returns STICKSLIP_DONE, STICKSLIP_BAD_INPUT or STICKSLIP_NO_INPUT. */
+int stickslip_columns(const char *content, int64_t bytes, int n, const char *const *names, stickslip_result **result);
+
 enum stickslip_outcome {
     STICKSLIP_DONE = 0,       /* the run reached its end */
     STICKSLIP_FAILED = 1,     /* it ended before: stickslip_report(result, "failure"); the tables hold what came before */
     STICKSLIP_BAD_INPUT = 2,  /* nothing was run: stickslip_report(result, "faults") */
-    STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL */
+    STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL, or a size negative */
 };
 
 /* One of the tables of a run: "series", "events", "pieces" (of the programme), "summary" (one row); or of stickslip_stability.
@@ -48,7 +67,7 @@ enum stickslip_outcome {
 const double *stickslip_table(const stickslip_result *result, const char *table, int64_t *rows, int *columns,
                               const char **names);
 
-/* Text about a run: "faults" of the input, one a line; "failure", why it ended early; "warnings", one a line. Empty where
+/* Text about a result: "faults" of the input, one a line; "failure", why a run ended early; "warnings", one a line. Empty where
  * there is none, NULL where there is no such report. Lives as long as the result. */
 const char *stickslip_report(const stickslip_result *result, const char *report);
 

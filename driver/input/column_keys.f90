@@ -25,6 +25,7 @@ contains
             name = trim(names(i))
             requests(i)%name = name
             call file%get_text(group, name // '_column', requests(i)%title)
+            requests(i)%needed = len(requests(i)%title) > 0
             call file%get_real(group, name // '_factor', requests(i)%factor, not_zero(), &
                 default=1.0_dp)
         end do

@@ -13,11 +13,11 @@ module csv_table
     use number_reader, only : read_number
     use number_text, only : whole_text
     use printable_text, only : lower, printable
-    use whole_file, only : next_line, read_whole_file
+    use whole_file, only : next_line, plain_text, read_whole_file
     implicit none
     private
 
-    public :: column_request, line_text, read_table, table, table_reader
+    public :: column_request, line_text, read_table, table, table_of_bytes, table_reader
 
     real(dp), parameter, public :: largest = 1.0e100_dp   !! number that is taken
     integer, parameter :: most_faults = 20
@@ -28,6 +28,7 @@ module csv_table
     type :: column_request
         character(len=:), allocatable :: name      !! as the caller calls it
         character(len=:), allocatable :: title     !! in the file; empty: much like `name`
+        logical :: needed = .false.                !! a file without it is at fault
         real(dp) :: factor = 1.0_dp                !! its numbers are multiplied by
     end type column_request
 
@@ -84,17 +85,36 @@ module csv_table
 contains
 
     !> Takes columns from a file; what is wrong with it is left in `read_in%faults`. Columns that
-    !> are not there are not in `read_in%names`, unless they were asked for by title: a fault.
+    !> are not there are not in `read_in%names`; that is a fault where they are needed.
     subroutine read_table(path, requests, read_in)
         character(len=*), intent(in) :: path
         type(column_request), intent(in) :: requests(:)
         type(table), intent(out) :: read_in
         character(len=:), allocatable :: text, problem
+
+        call read_whole_file(path, text, problem)
+        call take_text(text, problem, requests, read_in)
+    end subroutine read_table
+
+    !> The same of what a file holds, byte by byte.
+    subroutine table_of_bytes(bytes, requests, read_in)
+        character(len=*), intent(in) :: bytes
+        type(column_request), intent(in) :: requests(:)
+        type(table), intent(out) :: read_in
+        character(len=:), allocatable :: text, problem
+
+        call plain_text(bytes, text, problem)
+        call take_text(text, problem, requests, read_in)
+    end subroutine table_of_bytes
+
+    subroutine take_text(text, problem, requests, read_in)
+        character(len=*), intent(in) :: text, problem
+        type(column_request), intent(in) :: requests(:)
+        type(table), intent(inout) :: read_in
         type(file_form) :: form
         type(line_cells) :: cells
         integer :: first, last, line, rows, i
 
-        call read_whole_file(path, text, problem)
         allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
         if (len(problem) > 0) then
             call read_in%add_fault(0, problem)
@@ -126,7 +146,7 @@ contains
         end if
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
-    end subroutine read_table
+    end subroutine take_text
 
     !> Empty, or a comment.
     pure function is_no_row(line) result(yes)
@@ -185,7 +205,8 @@ contains
         end do
         read_in%header_line = form%header_line
         read_in%titles = ''
-        if (allocated(form%titles)) read_in%titles = list_of(form%titles)
+        if (best == 1) read_in%titles = cells_of(text, form%header_line)   ! for messages alone
+        if (best > 1) read_in%titles = list_of(form%titles)
         if (first_text == 0) then
             call read_in%add_fault(0, 'is empty')
         else if (open_quote > 0 .and. best < min(2, size(requests)) .or. .not. form%sound) then
@@ -193,7 +214,8 @@ contains
                 'a quote is not closed in this line')
         else if (best == 0) then
             call read_in%add_fault(first_text, 'no line of column names is found from here on: ' &
-                // "column '" // title_of(requests(1)) // "' is missing")
+                // "column '" // title_of(requests(1)) // "' is missing; this line has " &
+                // cells_of(text, first_text))
         else
             call check_titles(requests, form, read_in)
             call check_lines_before(text, form, read_in)
@@ -201,7 +223,7 @@ contains
     end subroutine find_header
 
     !> What a line is if it is the line of names.
-    subroutine read_titles(text, first, last, requests, form)
+    pure subroutine read_titles(text, first, last, requests, form)
         character(len=*), intent(in) :: text
         integer, intent(in) :: first, last
         type(column_request), intent(in) :: requests(:)
@@ -281,7 +303,7 @@ contains
         do i = 1, size(requests)
             title = title_of(requests(i))
             if (form%places(i) == 0) then
-                if (title /= requests(i)%name) call read_in%add_fault(form%header_line, &
+                if (requests(i)%needed) call read_in%add_fault(form%header_line, &
                     "column '" // printable(title) // "' is missing: there are " // read_in%titles)
                 cycle
             end if
@@ -301,6 +323,27 @@ contains
             end associate
         end do
     end subroutine check_titles
+
+    !> The cells of a line, for messages: of the separators the first one that the line has.
+    pure function cells_of(text, number) result(list)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: number        !! of the line
+        character(len=:), allocatable :: list
+        type(file_form) :: form
+        integer :: first, last, line, i
+
+        line = 0
+        last = -1
+        do while (line < number)
+            call next_line(text, first, last, line)
+        end do
+        do i = 1, len(separators)
+            form%separator = separators(i:i)
+            call read_titles(text, first, last, [column_request ::], form)
+            if (size(form%titles) > 1) exit
+        end do
+        list = list_of(form%titles)
+    end function cells_of
 
     pure function list_of(titles) result(text)
         type(line_text), intent(in) :: titles(:)

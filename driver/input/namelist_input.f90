@@ -18,7 +18,7 @@ module namelist_input
     private
 
     public :: above, any_number, at_least, between, lower, namelist_file, not_zero, &
-        read_namelist_file, read_namelist_text, rule
+        read_logical, read_namelist_file, read_namelist_text, rule
 
     integer, parameter :: name_length = 64
     integer, parameter :: most_shown = 50        !! faults
@@ -46,7 +46,7 @@ module namelist_input
             get_logical
         procedure :: has_group, given, require, require_groups, reject, refuse, add_fault, &
             refuse_unknown, describe_faults
-        procedure :: line_of_group, belongs_elsewhere, beside
+        procedure :: line_of_group, belongs_elsewhere, beside, gather
         procedure :: substitute, value_of, remove, listing
     end type namelist_file
 
@@ -380,19 +380,28 @@ contains
         logical, intent(out) :: value
         logical, intent(in) :: default
         type(value_token) :: token
-        logical :: found
+        logical :: found, is_logical
+
+        value = default
+        call take_one(self, group, key, token, found)
+        if (.not. found) return
+        call read_logical(token%text, value, is_logical)
+        if (.not. is_logical .or. token%quoted) call self%reject(group, key, &
+            'must be .true. or .false.')
+    end subroutine get_logical
+
+    pure subroutine read_logical(text, value, is_logical)
+        character(len=*), intent(in) :: text
+        logical, intent(out) :: value
+        logical, intent(out) :: is_logical
         character(len=7), parameter :: yes(6) = [character(len=7) :: '.true.', '.true', '.t.', &
             '.t', 'true', 't']
         character(len=7), parameter :: no(6) = [character(len=7) :: '.false.', '.false', '.f.', &
             '.f', 'false', 'f']
 
-        value = default
-        call take_one(self, group, key, token, found)
-        if (.not. found) return
-        value = any(yes == lower(token%text)) .and. .not. token%quoted
-        if (.not. (value .or. any(no == lower(token%text))) .or. token%quoted) call self%reject( &
-            group, key, 'must be .true. or .false.')
-    end subroutine get_logical
+        value = any(yes == lower(text))
+        is_logical = value .or. any(no == lower(text))
+    end subroutine read_logical
 
     !> Collects the values of a key in the order of their places, and says that the key is known.
     !> Nothing is collected where something is wrong.

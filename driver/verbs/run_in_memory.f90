@@ -5,11 +5,13 @@ module run_in_memory
         c_f_procpointer, c_funptr, c_int, c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use c_library, only : c_strlen
+    use csv_table, only : column_request, table, table_of_bytes
     use friction_mod, only : friction_null_pointer
     use input_kind, only : refuse_other_verb
     use linear_stability, only : undecided
     use memory_recorder, only : memory_table, memory_watch
     use namelist_input, only : namelist_file, read_namelist_text
+    use namelist_json, only : write_json
     use piece_table, only : piece_columns, piece_rows
     use run_observer, only : observer, observer_slot, step_news
     use run_outcome, only : outcome
@@ -22,17 +24,19 @@ module run_in_memory
     use steady_answers, only : answer_columns, find_answers, steady_answer
     use summary, only : summary_columns, summary_row
     use verb_common, only : exit_bad_input, exit_done, exit_failed
+    use whole_file, only : plain_text
     implicit none
     private
 
-    public :: c_free, c_report, c_run, c_stability, c_table
+    public :: c_columns, c_free, c_groups, c_report, c_run, c_stability, c_table
 
     !> What a run, or the analysis of steady sliding, leaves. Texts end with a null character.
     type :: run_result
         type(memory_watch) :: found
         type(memory_table) :: pieces, summary
         type(memory_table) :: steady, eigenvalues
-        character(len=:), allocatable :: faults, failure, warnings, reasons
+        type(memory_table) :: columns   !! of a file
+        character(len=:), allocatable :: faults, failure, warnings, reasons, text, groups
     end type run_result
 
     abstract interface
@@ -223,18 +227,93 @@ contains
         if (size(file%faults) > 0) faults = file%describe_faults() // c_null_char
     end subroutine read_text
 
+    !> `stickslip_groups` of include/stickslip_program.h.
+    function c_groups(name, content, bytes, result) result(status) bind(C, name='stickslip_groups')
+        type(c_ptr), value, intent(in) :: name, content
+        integer(c_int64_t), value, intent(in) :: bytes   !! of the content
+        type(c_ptr), value, intent(in) :: result         !! place of a pointer
+        integer(c_int) :: status
+        type(run_result), pointer :: this
+        type(namelist_file) :: file
+        character(len=:), allocatable :: problem
+
+        status = friction_null_pointer
+        if (bytes < 0) return
+        call make_result(name, content, result, this)
+        if (.not. associated(this)) return
+        !$omp critical (stickslip_reading)
+        call plain_text(letters_at(content, bytes), this%text, problem)
+        call read_namelist_text(fortran_text(name), letters_at(content, bytes), file, problem)
+        if (len(problem) > 0) call file%add_fault(0, problem)
+        call write_json(file, this%groups)
+        this%faults = file%describe_faults() // c_null_char
+        !$omp end critical (stickslip_reading)
+        this%text = this%text // c_null_char
+        this%groups = this%groups // c_null_char
+        status = merge(exit_bad_input, exit_done, len(this%faults) > 1)
+    end function c_groups
+
+    !> `stickslip_columns` of include/stickslip_program.h.
+    function c_columns(content, bytes, n, names, result) result(status) &
+        bind(C, name='stickslip_columns')
+        type(c_ptr), value, intent(in) :: content
+        integer(c_int64_t), value, intent(in) :: bytes   !! of the content
+        integer(c_int), value, intent(in) :: n           !! columns
+        type(c_ptr), value, intent(in) :: names          !! of n C texts
+        type(c_ptr), value, intent(in) :: result         !! place of a pointer
+        integer(c_int) :: status
+        type(run_result), pointer :: this
+        type(c_ptr), pointer :: name(:)
+        type(column_request) :: requests(max(n, 0))
+        type(table) :: read_in
+        integer :: i
+
+        status = friction_null_pointer
+        if (n < 1 .or. bytes < 0) return
+        if (c_associated(names)) then
+            call c_f_pointer(names, name, [n])
+            if (.not. all([(c_associated(name(i)), i = 1, n)])) return
+        end if
+        call make_result(content, names, result, this)
+        if (.not. associated(this)) return
+        !$omp critical (stickslip_reading)
+        do i = 1, n
+            requests(i)%name = fortran_text(name(i))
+            requests(i)%needed = .true.
+        end do
+        call table_of_bytes(letters_at(content, bytes), requests, read_in)
+        this%faults = ''
+        do i = 1, size(read_in%faults)
+            this%faults = this%faults // read_in%faults(i)%text // new_line('a')
+        end do
+        !$omp end critical (stickslip_reading)
+        this%columns%columns = c_null_char   ! the caller knows their names
+        this%columns%rows = size(read_in%values, 2)
+        call move_alloc(read_in%values, this%columns%values)
+        this%faults = this%faults // c_null_char
+        status = merge(exit_bad_input, exit_done, len(this%faults) > 1)
+    end function c_columns
+
     !> A C text.
     function fortran_text(address) result(text)
         type(c_ptr), intent(in) :: address
         character(len=c_strlen(address)) :: text
-        character(len=1, kind=c_char), pointer :: letters(:)
-        integer :: i
 
-        call c_f_pointer(address, letters, [len(text)])
-        do i = 1, len(text)
+        text = letters_at(address, int(len(text), c_int64_t))
+    end function fortran_text
+
+    function letters_at(address, number) result(text)
+        type(c_ptr), intent(in) :: address
+        integer(c_int64_t), intent(in) :: number
+        character(len=number) :: text
+        character(len=1, kind=c_char), pointer :: letters(:)
+        integer(c_int64_t) :: i
+
+        call c_f_pointer(address, letters, [number])
+        do i = 1, number
             text(i:i) = letters(i)
         end do
-    end function fortran_text
+    end function letters_at
 
     !> `stickslip_table` of include/stickslip_program.h.
     function c_table(result, table, rows, columns, names) result(values) &
@@ -265,6 +344,8 @@ contains
             call show(this%steady, rows, columns, names, values)
         case ('eigenvalues')
             call show(this%eigenvalues, rows, columns, names, values)
+        case ('columns')
+            call show(this%columns, rows, columns, names, values)
         case default   ! none
         end select
     end function c_table
@@ -296,11 +377,15 @@ contains
         case ('faults')
             text = c_loc(this%faults)
         case ('failure')
-            text = c_loc(this%failure)
+            if (allocated(this%failure)) text = c_loc(this%failure)
         case ('warnings')
-            text = c_loc(this%warnings)
+            if (allocated(this%warnings)) text = c_loc(this%warnings)
         case ('reasons')
             if (allocated(this%reasons)) text = c_loc(this%reasons)
+        case ('text')
+            if (allocated(this%text)) text = c_loc(this%text)
+        case ('groups')
+            if (allocated(this%groups)) text = c_loc(this%groups)
         case default   ! none
         end select
     end function c_report

@@ -66,7 +66,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _fail(path: pathlib.Path, error: Exception, status: int) -> int:
     for line in str(error).splitlines():
-        print(f'stickslip-fit: {path}: {line}', file=sys.stderr)
+        print(f'stickslip-fit: {line if line.startswith(f"{path}:") else f"{path}: {line}"}', file=sys.stderr)
     return status
 
 

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ._optional import needed
-from ._text import decoded
+from . import _program
 from .laws import Law
 
 Settings = dict[str, dict[str, Any]]
@@ -41,14 +40,7 @@ def groups_of(source: str | pathlib.Path | dict) -> Settings:
                 raise TypeError(f'group {group}: a dict of keys is needed, not {keys!r}')
             groups[group] = _lowered(keys, f'group {group}, key')
         return _lowered(groups, 'group')
-    f90nml, text = needed('f90nml', 'run'), text_of(source)
-    _refuse_misread(text)
-    try:
-        parsed = f90nml.reads(text).todict()
-    except Exception as error:   # its parser asserts, and runs off the end of texts
-        raise InputError(f'this is no namelist that can be read ({type(error).__name__}: {error}); is a quote or a slash '
-                         'missing?') from error
-    groups = {group: dict(keys) for group, keys in parsed.items() if isinstance(keys, dict)}
+    groups = _input_of(source).groups
     if not is_text(source):
         for keys in groups.values():   # the program looks for files beside its input
             if isinstance(keys.get('file'), str):
@@ -56,20 +48,14 @@ def groups_of(source: str | pathlib.Path | dict) -> Settings:
     return groups
 
 
-def _refuse_misread(text: str) -> None:
-    """Raises InputError with what the parser takes without a word, and in another way than the program."""
-    bare = re.sub(r"""'[^']*'|"[^"]*"|![^\n]*""", '', text)   # without texts and comments
-    found: set[str] = set()
-    faults = []
-    for group, body in re.findall(r'&(\w+)(.*?)(?:/|&end\b|$)', bare.lower(), re.DOTALL):
-        keys = re.findall(r'([a-z]\w*)\s*(\([^)]*\))?\s*=', body)
-        for name in [f'group &{group}', *(f'&{group} {key}{place}' for key, place in keys)]:
-            if name in found:
-                faults.append(f'{name}: given twice')
-            found.add(name)
-        faults += [f'&{group} {key}{place}: give the whole list, without subscripts' for key, place in keys if place]
-    if faults:
-        raise InputError('\n'.join(faults))
+def _input_of(source: str | pathlib.Path) -> _program.Namelists:
+    """What a namelist says; InputError with all that is wrong with the way in which it is written."""
+    is_file = not is_text(source)
+    content = pathlib.Path(source).read_bytes() if is_file else source.encode()
+    read = _program.namelists(content, str(source) if is_file else 'input')
+    if read.faults:
+        raise InputError(read.faults.rstrip())
+    return read
 
 
 def _lowered(named: Mapping[str, Any], what: str) -> dict[str, Any]:
@@ -93,14 +79,7 @@ def text_of(source: str | pathlib.Path | dict) -> str:
     """The text of a namelist."""
     if isinstance(source, Mapping):
         return written(groups_of(source))
-    if not is_text(source):
-        try:
-            return decoded(pathlib.Path(source).read_bytes())
-        except ValueError as error:
-            raise InputError(f'{source}: {error}') from None
-    if '\0' in source:
-        raise InputError('the text of the input holds a character 0')
-    return source
+    return _input_of(source).text
 
 
 def written(groups: Settings) -> str:

@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from typing import NamedTuple
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,10 @@ _run = _library.stickslip_run
 _run.argtypes = [ctypes.c_char_p, ctypes.c_char_p, _watch_type, ctypes.c_void_p, ctypes.POINTER(ctypes.c_void_p)]
 _stability = _library.stickslip_stability
 _stability.argtypes = [ctypes.c_char_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_void_p)]
+_groups = _library.stickslip_groups
+_groups.argtypes = [ctypes.c_char_p, ctypes.c_char_p, ctypes.c_int64, ctypes.POINTER(ctypes.c_void_p)]
+_columns = _library.stickslip_columns
+_columns.argtypes = [ctypes.c_char_p, ctypes.c_int64, ctypes.c_int, ctypes.c_void_p, ctypes.POINTER(ctypes.c_void_p)]
 _table = _library.stickslip_table
 _table.restype = ctypes.c_void_p
 _table.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_int),
@@ -80,6 +85,36 @@ def steady_sliding(text: str, name: str = 'input') -> Output:
     try:
         tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in ('stability', 'eigenvalues')}
         return Output(status, tables, {report: _report(result, report.encode()).decode() for report in ('faults', 'reasons')})
+    finally:
+        _free(result)
+
+
+class Namelists(NamedTuple):
+    """What an input says."""
+
+    groups: dict[str, dict[str, Any]]   #: of keys; empty where there are faults
+    text: str
+    faults: str                         #: one a line, with the input's name
+
+
+def namelists(content: bytes, name: str = 'input') -> Namelists:
+    """Takes an input apart as the program does, whatever wrote it."""
+    result = ctypes.c_void_p()
+    status = _groups(name.encode(errors='replace'), content, len(content), ctypes.byref(result))
+    try:
+        groups, text, faults = (_report(result, report) for report in (b'groups', b'text', b'faults'))
+        return Namelists(json.loads(groups) if status == DONE else {}, text.decode(errors='replace'), faults.decode(errors='replace'))
+    finally:
+        _free(result)
+
+
+def columns(content: bytes, names: Sequence[str]) -> tuple[np.ndarray, str]:
+    """Columns of a table, as the program reads measured files, one after the other; and what is wrong with it, a line each."""
+    result = ctypes.c_void_p()
+    wanted = (ctypes.c_char_p * len(names))(*[name.encode() for name in names])
+    _columns(content, len(content), len(names), wanted, ctypes.byref(result))
+    try:
+        return _read(result, 'columns').values.T, _report(result, b'faults').decode(errors='replace')
     finally:
         _free(result)
 

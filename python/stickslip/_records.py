@@ -1,18 +1,15 @@
 """Measured records of a force against time, and what they show: noise, events, their scatter."""
 from __future__ import annotations
 
-import csv
 import dataclasses
 import pathlib
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from . import _namelist
+from . import _namelist, _program
 from ._optional import needed
-from ._text import decoded
 
 
 class RecordError(ValueError):
@@ -122,42 +119,10 @@ def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray
     """Columns of a file, by name, under the rules that the program has for tables."""
     if path.suffix.lower() == '.mat':
         return _matlab_columns(path, names)
-    try:
-        lines = _lines(path)
-        separator, first, places = _header(path, lines, names)
-        columns: list[list[float]] = [[] for _ in names]
-        words = 0
-        for number, line in enumerate(lines[first:], first + 1):
-            if not line.strip() or _is_comment(line):
-                continue
-            cells = _cells(line, separator)
-            try:
-                values = [_number(cells[place]) for place in places]
-            except (IndexError, ValueError):
-                words += 1
-                if words <= WORD_ROWS and not columns[0] and not any(map(_like_number, cells)):
-                    continue   # units
-                raise RecordError(f'{path}, line {number}: {line.strip()[:60]!r} has no number for each of '
-                                  + ', '.join(names)) from None
-            for column, value in zip(columns, values):
-                column.append(value)
-    except csv.Error as error:
-        raise RecordError(f'{path}: not a table that can be read ({error})') from None
-    return [np.array(column) for column in columns]
-
-
-def _lines(path: pathlib.Path) -> list[str]:
-    try:
-        return decoded(path.read_bytes()).splitlines()
-    except ValueError as error:
-        raise RecordError(f'{path}, {error}') from None
-
-
-WORD_ROWS = 2   # of units or the like, behind the names of the columns
-
-
-def _is_comment(line: str) -> bool:
-    return line.lstrip().startswith(('#', '%'))
+    found, faults = _program.columns(path.read_bytes(), names)
+    if faults:
+        raise RecordError('\n'.join(f'{path}: {fault}' for fault in faults.splitlines()))
+    return list(found)
 
 
 def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
@@ -171,66 +136,6 @@ def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarr
             raise RecordError(f'{path}: no variable {name!r}; there are '
                               + ', '.join(key for key in table if not key.startswith('__')))
     return [table[name] for name in names]
-
-
-def _header(path: pathlib.Path, lines: list[str], names: tuple[str, ...]) -> tuple[str | None, int, list[int]]:
-    """What separates columns (None: spaces), the first line after their names, and their places. A comment holds the names
-    only where no other line does."""
-    head = list(enumerate(lines[:1000], 1))
-    for number, line in [item for item in head if not _is_comment(item[1])] + [item for item in head if _is_comment(item[1])]:
-        for separator in (';', '\t', ',', None):
-            titles = _cells(line.lstrip().lstrip('#%'), separator)
-            found = [_places(name, titles) for name in names]
-            if all(found):
-                for name, places in zip(names, found):
-                    if len(places) > 1:
-                        both = ' and '.join(repr(titles[place]) for place in places[:2])
-                        raise RecordError(f'{path}, line {number}: columns {both} may both be {name!r}: name one as it is '
-                                          'written, and each only once')
-                return separator, number, [places[0] for places in found]
-    first = next((line for line in lines if line.strip()), '')
-    if not first:
-        raise RecordError(f'{path}: the file is empty')
-    separator = next((separator for separator in (';', '\t', ',') if separator in first), None)
-    titles = _cells(first, separator)
-    missing = next((name for name in names if not _places(name, titles)), names[0])
-    raise RecordError(f'{path}: no column {missing!r}; there are ' + ', '.join(titles[:20]))
-
-
-def _places(name: str, titles: list[str]) -> list[int]:
-    """The columns that have a name: as it is written if there is one, else without regard to case, else without a unit."""
-    for strictness in range(3):
-        wanted = _simplified(name, strictness)
-        if places := [place for place, title in enumerate(titles) if title and _simplified(title, strictness) == wanted]:
-            return places
-    return []
-
-
-def _simplified(title: str, strictness: int) -> str:
-    """A name, without its case (1), or without its unit either (2): `Time [s]`, `time (s)`, `Time/s`."""
-    name = title.lower() if strictness > 0 else title
-    return re.split(r'(?<=.)[\[({/,]', name, maxsplit=1)[0].strip() if strictness > 1 else name
-
-
-def _cells(line: str, separator: str | None) -> list[str]:
-    """The cells of a line, without quotes around them."""
-    if separator is None:
-        return line.split()
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
-
-
-def _like_number(cell: str) -> bool:
-    """Is this no unit, nor another word? A number that is badly written counts."""
-    return cell[:1] in set('0123456789+-.,\u2212') and any(map(str.isdigit, cell)) or cell.lower() in ('nan', 'inf', 'infinity')
-
-
-def _number(cell: str) -> float:
-    """A number, also with a decimal comma; NaN for an empty cell."""
-    if not cell.isascii() or '_' in cell:   # which float would take
-        raise ValueError(cell)
-    if ',' in cell and '.' not in cell:
-        cell = cell.replace(',', '.')
-    return float(cell) if cell else float('nan')
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -22,15 +22,14 @@ class Build(unittest.TestCase):
 
     def test_only_numpy_is_needed_and_what_else_is_told(self):
         program = """import sys
-for name in ('pandas', 'scipy', 'matplotlib', 'f90nml'):
+for name in ('pandas', 'scipy', 'matplotlib'):
     sys.modules[name] = None
 import stickslip
 law = stickslip.laws.Coulomb(alpha_n=1, alpha_t=1, mu=0.3)
 assert stickslip.update([-1.0, 0.0], 1.0, law).traction[0] == -1
-record = stickslip.Record(range(99), range(99))
 for call, words in ((lambda: stickslip.run({'friction': law}), "needs pandas: install the package as 'stickslip[run]'"),
                     (lambda: stickslip.run('&friction /'), 'needs pandas'),
-                    (lambda: stickslip.fit(record, '&friction /', free=['mu']), 'needs f90nml')):
+                    (lambda: stickslip.Record.read('rig.mat'), 'needs scipy')):
     try:
         call()
     except ImportError as error:

@@ -1,5 +1,6 @@
 """stickslip.run: the program in this process, the same numbers as from its files."""
 import concurrent.futures
+import ctypes
 import os
 import pathlib
 import pickle
@@ -11,7 +12,7 @@ import warnings
 import numpy as np
 
 import stickslip
-from stickslip import _namelist
+from stickslip import _namelist, _program
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SLIDER = {'mass': 1e-3, 'stiffness': 1.0, 'damping': 0.01, 'area': 1000.0, 'normal_traction': 0.01}
@@ -83,10 +84,32 @@ class Run(unittest.TestCase):
                 np.testing.assert_array_equal(stickslip.run(str(path)).table, rows)
                 self.assertEqual(len(stickslip.stability(path).table), 1)
             path.write_bytes(text.encode() + b'\n\0&slider /')
-            with self.assertRaisesRegex(stickslip.InputError, 'x.nml: line [0-9]+: a character 0'):
+            with self.assertRaisesRegex(stickslip.InputError, 'x.nml: line [0-9]+: holds a character 0'):
                 stickslip.run(path)
         with self.assertRaisesRegex(stickslip.InputError, 'a character 0'):
             stickslip.run(text + '\0')
+
+    def test_what_is_written_is_read_back_to_the_last_bit(self):
+        draw = np.random.default_rng(5)
+        words = ["it's", 'a "b" \\ c', '\xb5m', ' & / ! $ ', 'x = 1, y', '1.5', '.true.', '']
+        for _ in range(300):
+            numbers = (draw.normal(size=draw.integers(1, 20)) * 10.0**draw.uniform(-300, 300)).tolist()
+            groups = {'a': {'reals': numbers if len(numbers) > 1 else numbers[0], 'whole': int(draw.integers(-10**17, 10**17))},
+                      'b_2': {'text': str(draw.choice(words)), 'texts': draw.choice(words, 3).tolist(), 'yes': True},
+                      'c': {'no': [False, True], 'mixed': [1, -0.0, 5e-324, 'x', 1.7e308]}, 'empty': {}}
+            self.assertEqual(_namelist.groups_of(_namelist.written(groups)), groups)
+        self.assertEqual(_namelist.groups_of("&A x(2::-1) = 2*5 X(3:) = 1d1, +07 /\n&b t = T f = .FALSE. /"),
+                         {'a': {'x': [5, 5, 10.0, 7]}, 'b': {'t': True, 'f': False}})
+
+    def test_missing_arguments_of_the_c_interface_are_told(self):
+        names = (ctypes.c_char_p * 2)(b'time', None)
+        place = ctypes.c_void_p()
+        for routine, *arguments in ((_program._groups, None, b'', 0), (_program._groups, b'x', None, 0), (_program._groups, b'x', b'', -1),
+                                    (_program._columns, None, 0, 1, names), (_program._columns, b'', 0, 1, None),
+                                    (_program._columns, b'', 0, 2, names), (_program._columns, b'', 0, 0, names)):
+            self.assertEqual(routine(*arguments, place), -8)
+            self.assertIsNone(place.value)
+        self.assertEqual(_program._groups(b'x', b'', 0, None), -8)
 
     def test_a_dict_may_hold_whatever_holds_numbers(self):
         import pandas
@@ -139,7 +162,6 @@ class Run(unittest.TestCase):
     def test_null_pointers_and_unknown_names_are_no_crash(self):
         import ctypes
 
-        from stickslip import _program
         result, names, rows, columns = ctypes.c_void_p(), ctypes.c_char_p(), ctypes.c_int64(), ctypes.c_int()
         nobody = _program._watch_type()
         self.assertEqual(_program._run(b'x', None, nobody, None, ctypes.byref(result)), -8)
