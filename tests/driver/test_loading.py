@@ -887,7 +887,7 @@ class BadProgramme(Columns):
                 ('time,velocity\n0,1\n1,"1\n2,1\n', 'line 3: a quote is not closed'),
                 ('"time\n[s]","velocity\n[m/s]"\n0,1\n1,1\n', 'line 1: a quote is not closed in this line'),
                 ('time,velocity,"normal\n[Pa]"\n0,1,1\n1,1,1\n', 'line 1: a quote is not closed in this line'),
-                ('time s,velocity mm/s\n0,1\n1,1\n', "displacement': there are 'time', 's,velocity', 'mm/s'"),
+                ('time s,velocity mm/s\n0,1\n1,1\n', "displacement': there are 'time s', 'velocity mm/s'"),
                 ('time,displacement\n0,1\n1,-1e101\n', 'line 3: displacement: the number, times its factor, must not'),
                 ('time,velocity\n0,1\n1e-20,1e99\n', 'line 3: changes faster than by 1e100 in unit time'),
                 ('time;velocity\n0;0,5\n1;0.5\n', "line 3: velocity = '0.5': has a decimal point, and line 2 has"),
