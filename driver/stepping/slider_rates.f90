@@ -552,6 +552,7 @@ contains
         if (.not. drag > 0.0_dp) return
         do i = 1, most_iterations
             call surface%resistance_at(state, v, pressure, resistance, by_rate)
+            if (.not. by_rate > 0.0_dp) exit   ! friction vanishes beside cohesion: the drag decides
             change = (push - drag * v - load%traction) / (1.0_dp + drag / by_rate)
             load%traction = load%traction + change
             call surface%slip_rate(state, load, v, jumps)

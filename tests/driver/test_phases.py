@@ -94,6 +94,16 @@ class Phases(Program):
         self.assert_done(result)
         self.assertLess(int(re.search(r'steps +(\d+)', result.stdout).group(1)), 2000)
 
+    def test_friction_that_vanishes_beside_cohesion_leaves_the_slip_to_the_damper(self):
+        # stages of a step have theta = 1e-130: no figure of the friction is left (0/0 before)
+        self.table("""&friction law='linker_dieterich', alpha_n=8.16, alpha_t=1.1547079122246948, a=0.0014342604938637098,
+                b=0.003100211829849902, d_c=0.0012707840434614062, v0=0.0026142313923052675, f0=0.8196841458437134,
+                alpha=0.3194350592536061, cohesion=0.1072350522238599, eta_t=0.00016093393389678736 /
+            &slider mass=1.3145918612493701e-07, stiffness=1.1547079122246948, damping=0.02078891812527348,
+                area=1.431910106431098, normal_traction=0.17030485110152743 /
+            &drive velocity=0.17044497645153864 /
+            &time t_end=3.15, rtol=5.3e-7 /""")
+
     def test_a_rigid_contact_that_touches_down_does_not_stop_its_block(self):
         # v0 through the open second, then M v' = -mu N: stops after v0 M/(mu N), v0^2 M/(2 mu N)
         for law in ("'coulomb', mu=0.2", "'slip_weakening', mu_s=0.4, mu_k=0.2, d_c=1e-9",
