@@ -3,7 +3,7 @@ module run_outcome
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use piece_measures, only : friction_range
-    use slider_system, only : energy_balance
+    use energies, only : energy_balance
     implicit none
     private
 

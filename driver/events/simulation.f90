@@ -6,13 +6,15 @@ module simulation
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, load_factors
+    use energies, only : energy_balance, let_go, take_stock
     use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
         statev_u_et
+    use initial_states, only : displace, initial_state, place
     use integrator_choice, only : choose_integrator
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
-    use slider_system, only : displace, initial_state, place, slider, slider_state, swap_states
+    use slider_system, only : slider, slider_state, swap_states
     use slip_observer, only : slip_watch
     implicit none
     private
@@ -44,6 +46,7 @@ contains
         type(settings), intent(in) :: run
         type(simulation_run), intent(out) :: live
         type(slider) :: system
+        type(energy_balance) :: energy
         integer :: status
 
         system = slider(run%mass, run%stiffness, run%damping, run%area, run%props, &
@@ -64,7 +67,8 @@ contains
             live%state)
         if (run%rigid_contact) live%state%statev(:, statev_u_et) = 0.0_dp
         call choose_integrator(run, system, live%state, live%steps)
-        live%energy_at_start = system%energy_of(live%state)
+        call take_stock(system, live%state, energy)
+        live%energy_at_start = energy%held()
     end subroutine start_run
 
     !> Takes the steps that are left. `failure` of the outcome says when and why, if the run ends
@@ -89,7 +93,7 @@ contains
             end if
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
             live%taken = live%taken + 1
-            live%let_go = live%let_go + live%steps%system%let_go(live%state, live%other)
+            live%let_go = live%let_go + let_go(live%steps%system, live%state, live%other)
             live%most_work = max(live%most_work, abs(live%other%drive_work))
             call swap_states(live%state, live%other)
             news%complete = report%complete
@@ -174,7 +178,7 @@ contains
         result%largest_moment = live%chain_events%largest_moment
         result%cut_events = live%chain_events%cut_short
         result%unresolved = live%chain_events%finder%unresolved
-        call live%steps%system%take_stock(live%state, result%energy)
+        call take_stock(live%steps%system, live%state, result%energy)
         result%energy%at_start = live%energy_at_start
         result%energy%dissipated = result%energy%dissipated + live%let_go
         result%energy%most_work = live%most_work

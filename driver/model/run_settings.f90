@@ -2,9 +2,10 @@
 module run_settings
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use chain_settings, only : chain
+    use initial_states, only : initial_values
     use law_facts, only : typical_strength
     use loading_programme, only : programme
-    use slider_system, only : ends_fixed, initial_values, normal_motion
+    use slider_system, only : ends_fixed, normal_motion
     use unit_names, only : units
     implicit none
     private

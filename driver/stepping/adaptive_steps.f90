@@ -8,12 +8,13 @@ module adaptive_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
+    use contact_forces, only : apply_normal_traction
+    use energies, only : account
     use friction_mod, only : friction_coefficient_change, friction_facts, &
         friction_no_convergence, law_facts, prop_alpha_n, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status, statev_u_n
     use run_settings, only : settings
-    use slider_system, only : apply_normal_traction, blend, set_accelerations, slider, &
-        slider_state
+    use slider_system, only : set_accelerations, slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
     use time_integrator, only : newmark
     use turning_times, only : turn
@@ -99,7 +100,7 @@ contains
 
         call self%method%step(self%system, self%origin + self%drive%position(time), &
             self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
-        if (report%status >= 0) call self%system%account(old, new)
+        if (report%status >= 0) call account(self%system, old, new)
         new%time = time
         call self%count_iterations(report%iterations)
     end subroutine try
@@ -276,6 +277,28 @@ contains
 
         yes = system%across%free() .and. any((ends%normal > 0.0_dp) .neqv. old%normal > 0.0_dp)
     end function opens_or_closes
+
+    !> Weighted sum of states, but for their times, drives and loads.
+    pure subroutine blend(states, weights, mixed)
+        type(slider_state), intent(in) :: states(:)
+        real(dp), intent(in) :: weights(:)           !! one for each state [-]
+        type(slider_state), intent(inout) :: mixed   !! allocated like the states
+        integer :: k
+
+        mixed%drive_work = dot_product(weights, states%drive_work)
+        mixed%damped = dot_product(weights, states%damped)
+        mixed%v_n = dot_product(weights, states%v_n)
+        mixed%x(:) = weights(1) * states(1)%x
+        mixed%v(:) = weights(1) * states(1)%v
+        mixed%friction(:) = weights(1) * states(1)%friction
+        mixed%statev(:, :) = weights(1) * states(1)%statev
+        do k = 2, size(states)
+            mixed%x(:) = mixed%x + weights(k) * states(k)%x
+            mixed%v(:) = mixed%v + weights(k) * states(k)%v
+            mixed%friction(:) = mixed%friction + weights(k) * states(k)%friction
+            mixed%statev(:, :) = mixed%statev + weights(k) * states(k)%statev
+        end do
+    end subroutine blend
 
     !> When slip began or ended within the last step, unless next to its ends: friction has a kink
     !> there. In steps of Newmark's it counts if a block stuck or slipped differently since.

@@ -6,21 +6,19 @@ module continuous_chain
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use abstract_integrator, only : step_report
     use archive_file, only : archive
+    use block_motion, only : fill_block, set_growing_weights, set_up, unknowns_of
     use chain_rates, only : chain_equations
-    use continuous_steps, only : continuous, fill_block, implicit_rates, set_up, unknowns_of
+    use continuous_steps, only : continuous, implicit_rates
     use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings
-    use slider_rates, only : damped, drive_work, extension, phase_slide, unknowns, velocity
+    use slider_rates, only : damped, drive_work, phase_slide, unknowns
     use slider_system, only : ends_periodic, slider, slider_state
-    use step_ends, only : end_of_step, next_limit
+    use step_ends, only : end_of_step
     implicit none
     private
 
     public :: chain_in_continuous_time, continuous_blocks
-
-    !> Part of the time that no step is shorter than.
-    real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
 
     type, extends(continuous) :: continuous_blocks
         type(chain_equations) :: chain
@@ -29,7 +27,7 @@ module continuous_chain
         real(dp), allocatable, dimension(:, :) :: now, now_rates, then, then_rates
     contains
         procedure :: prepare, step, visit
-        procedure, private :: set_weights_of_all, try, finish, jumps
+        procedure, private :: try, finish, jumps
     end type continuous_blocks
 
 contains
@@ -75,7 +73,7 @@ contains
         n = size(start%x)
         allocate (self%now(unknowns, n), self%now_rates(unknowns, n), self%then(unknowns, n), &
             self%then_rates(unknowns, n))
-        self%known = .false.
+        self%block%known = .false.
         call self%rodas%make_room(n, system%ends == ends_periodic)
         self%chain%system = system
         self%chain%drive = run%drive
@@ -94,9 +92,10 @@ contains
                 else
                     self%rodas%natural(:, i) = self%rodas%natural(:, 1)
                 end if
-                self%now(:, i) = unknowns_of(block, system, start, i)
+                self%now(:, i) = unknowns_of(block, start, i)
             end associate
         end do
+        self%rodas%weights = 1.0_dp / (self%rtol * self%rodas%natural)
         self%now(drive_work, 1) = start%drive_work
         self%now(damped, 1) = start%damped
     end subroutine prepare
@@ -107,18 +106,21 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         real(dp) :: end, wanted, h, error
-        integer :: piece
+        integer :: piece, i
         logical :: failed, again
 
         piece = self%drive%piece(old%time)
         if (piece /= self%chain%piece) then
             call self%chain%enter(piece)
-            self%known = .false.
+            self%block%known = .false.
         end if
-        if (old%time >= self%limit) self%limit = next_limit(self%drive, self%every, self%t_end, &
-            4.0_dp * shortest, old%time)
-        if (.not. self%known) call self%chain%rates(old%time, self%now, self%now_rates, failed)
-        call self%set_weights_of_all()
+        call self%take_limit(old%time)
+        if (.not. self%block%known) call self%chain%rates(old%time, self%now, self%now_rates, &
+            failed)
+        do i = 1, size(self%now, 2)
+            call set_growing_weights(self%rtol, self%rodas%natural(:, i), self%now(:, i), &
+                self%rodas%weights(:, i))
+        end do
         again = .false.
         do
             wanted = min(self%dt, self%dt_max)
@@ -126,17 +128,14 @@ contains
             h = end - old%time
             call self%try(old%time, end, error)
             if (error <= 1.0_dp) exit
-            self%rejected = self%rejected + 1
             again = .true.
-            self%dt = h * max(0.2_dp, 0.9_dp * error**(-0.25_dp))
-            if (.not. self%dt > max(self%dt_min, shortest * old%time)) then
+            if (.not. self%can_shorten(old%time, h, error)) then
                 report%status = friction_no_convergence
                 if (self%jumps(old%time, error)) report%status = friction_no_rate
                 return
             end if
         end do
-        self%dt = h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(error, 1.0e-10_dp)**(-0.25_dp))
-        if (h < 0.99_dp * wanted) self%dt = max(self%dt, wanted)   ! the limit has cut it
+        call self%lengthen(h, error, wanted, again)
         call self%finish(end, old, new)
     end subroutine step
 
@@ -154,22 +153,6 @@ contains
                 self%now_rates(:, i), maxval(abs(self%drive%velocity)))
         end do
     end function jumps
-
-    !> What the error of each unknown is compared with: its own size, but not less than the
-    !> amplitude of the contact's ringing.
-    pure subroutine set_weights_of_all(self)
-        class(continuous_blocks), intent(inout) :: self
-        integer, parameter :: growing(2) = [extension, velocity]
-        integer :: k
-
-        associate (weights => self%rodas%weights, natural => self%rodas%natural)
-            weights = 1.0_dp / (self%rtol * natural)
-            do k = 1, size(growing)
-                weights(growing(k), :) = 1.0_dp / (self%rtol * max(natural(growing(k), :), &
-                    abs(self%now(growing(k), :))))
-            end do
-        end associate
-    end subroutine set_weights_of_all
 
     subroutine try(self, start, end, error)
         class(continuous_blocks), intent(inout) :: self
@@ -195,7 +178,7 @@ contains
 
         self%now(:, :) = self%then
         self%now_rates(:, :) = self%then_rates
-        self%known = .true.
+        self%block%known = .true.
         new%time = t
         new%drive = self%origin + self%drive%position(t)
         new%normal = old%normal
@@ -204,8 +187,10 @@ contains
         new%damped = sum(self%now(damped, :))
         new%statev(:, :) = old%statev
         do i = 1, size(new%x)
-            call fill_block(self%chain%blocks(min(i, size(self%chain%blocks))), self%system, t, &
-                self%now(:, i), self%now_rates(:, i), i, old, new)
+            associate (block => self%chain%blocks(min(i, size(self%chain%blocks))))
+                call fill_block(block, block%drive%normal(1), t, self%now(:, i), &
+                    self%now_rates(:, i), i, old, new)
+            end associate
         end do
     end subroutine finish
 
@@ -216,7 +201,7 @@ contains
         call self%visit_counts(file)
         call file%visit(self%now)
         call file%visit(self%dt)
-        self%known = .false.
+        self%block%known = .false.
     end subroutine visit
 
 end module continuous_chain

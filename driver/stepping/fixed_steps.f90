@@ -4,6 +4,7 @@ module fixed_steps
     use abstract_integrator, only : integrator, step_report
     use archive_file, only : archive
     use chain_parts, only : choose_method
+    use energies, only : account
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
     use time_integrator, only : newmark
@@ -55,7 +56,7 @@ contains
             call self%method%step(self%system, self%origin + self%drive%position(time), &
                 self%drive%normal_traction(time, self%drive%piece(time)), time - old%time, old, &
                 new, report)
-            if (report%status >= 0) call self%system%account(old, new)
+            if (report%status >= 0) call account(self%system, old, new)
             new%time = time
             call self%count_iterations(report%iterations)
             if (report%status >= 0) exit

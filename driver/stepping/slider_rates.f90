@@ -1,13 +1,14 @@
-!> One block in continuous time: its rate equations, in each phase of its contact, and the
-!> quantities that change their sign where one phase ends (docs/theory.md, section 13).
+!> One block in continuous time: its rate equations, in each phase of its contact (docs/theory.md,
+!> section 13).
 module slider_rates
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : law_state, load_rates, onset_drops, onset_gradual, sliding_surface
     use loading_programme, only : programme
+    use slip_balance, only : damper_balance, slip_of
     implicit none
     private
 
-    public :: slider_equations
+    public :: contact_motion, slider_equations
 
     !> Unknowns. Those of the error norm come first; the others follow from them.
     integer, parameter, public :: unknowns = 9, controlled = 5
@@ -27,8 +28,6 @@ module slider_rates
     integer, parameter, public :: phase_stick = 1
     integer, parameter, public :: phase_slide = 2    !! as the law says
     integer, parameter, public :: phase_capped = 3   !! as the shear cap says
-
-    integer, parameter, public :: switches = 3   !! ways in which a phase can end
 
     real(dp), parameter :: too_fast = 1.0e100_dp   !! for rates that are to be squared [L/T]
 
@@ -50,17 +49,10 @@ module slider_rates
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
-        procedure :: enter, rates, find_velocity, switch_values, law_state_of, strength, &
-            full_strength, traction, inputs, follows_traction, sense_of, follows_share, runs_away
+        procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
+            traction, inputs, follows_traction, sense_of, follows_share, runs_away, &
+            damped_contact, balance_at
     end type slider_equations
-
-    !> Of a contact with a damper, or on a block with one and without mass: `push - drag v` is its
-    !> traction at the slip rate v.
-    type :: damper_balance
-        real(dp) :: sense   !! of the slip in x
-        real(dp) :: push    !! >= 0 [F/L^2]
-        real(dp) :: drag    !! >= 0 [F T/L^3]
-    end type damper_balance
 
     !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
     real(dp), parameter :: least_ratio = 1.0e-12_dp
@@ -257,7 +249,7 @@ contains
                 - min(self%surface%tau_max, state%r * full_strength(self, y, pressure))) &
                 / balance%drag
         else
-            call slip_of(self, state, pressure, balance, contact%slip, failed)
+            call slip_of(self%surface, state, pressure, balance, contact%slip, failed)
             if (failed) return
         end if
         contact%traction = balance%sense * (balance%push - balance%drag * contact%slip)
@@ -326,46 +318,6 @@ contains
         balance%push = abs(push)
     end function balance_at
 
-    !> The least slip rate at which `push - drag v` is what the law, or its cap, resists with.
-    pure subroutine slip_of(self, state, pressure, balance, v, failed)
-        class(slider_equations), intent(in) :: self
-        type(law_state), intent(in) :: state
-        real(dp), intent(in) :: pressure
-        type(damper_balance), intent(in) :: balance
-        real(dp), intent(out) :: v        !! [L/T]
-        logical, intent(out) :: failed    !! there is none
-        integer, parameter :: most_iterations = 100
-        real(dp), parameter :: round_off = 4.0_dp * epsilon(1.0_dp)
-        real(dp) :: resistance, by_rate, misfit, capped
-        integer :: i
-
-        failed = .false.
-        v = 0.0_dp
-        call self%surface%resistance_at(state, 0.0_dp, pressure, resistance, by_rate)
-        if (balance%push <= min(resistance, self%surface%tau_max)) return
-        if (balance%push > self%surface%tau_max) then
-            failed = .not. balance%drag > 0.0_dp
-            if (failed) return
-            capped = (balance%push - self%surface%tau_max) / balance%drag
-            call self%surface%resistance_at(state, capped, pressure, resistance, by_rate)
-            v = capped
-            if (resistance >= self%surface%tau_max) return
-            v = 0.0_dp
-        end if
-        if (self%surface%traits%stiff) then
-            v = creep(self%surface, state, balance%push, balance%drag, pressure)
-            return
-        end if
-        do i = 1, most_iterations
-            call self%surface%resistance_at(state, v, pressure, resistance, by_rate)
-            misfit = balance%push - balance%drag * v - resistance
-            failed = .not. balance%drag + by_rate > 0.0_dp
-            if (failed .or. abs(misfit) <= round_off * balance%push) return
-            v = max(0.0_dp, v + misfit / (balance%drag + by_rate))
-        end do
-        failed = .not. abs(misfit) <= 1.0e3_dp * round_off * balance%push
-    end subroutine slip_of
-
     !> Rates of what the law remembers.
     pure subroutine take_memory(self, changes, state, contact)
         class(slider_equations), intent(in) :: self
@@ -396,8 +348,8 @@ contains
         v = y(velocity)
         if (self%mass > 0.0_dp) return
         push = self%sense * self%stiffness * y(extension) / self%area
-        call slip_of(self, law_state_of(self, y, pressure), pressure, damper_balance(self%sense, &
-            push, self%damping / self%area), v, failed)
+        call slip_of(self%surface, law_state_of(self, y, pressure), pressure, &
+            damper_balance(self%sense, push, self%damping / self%area), v, failed)
         v = self%sense * v
     end subroutine find_velocity
 
@@ -456,7 +408,7 @@ contains
             if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(y(velocity))
             if (.not. self%mass > 0.0_dp) then
                 if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(pull)
-                call slip_of(self, state, pressure, damper_balance(sense, sense * pull &
+                call slip_of(self%surface, state, pressure, damper_balance(sense, sense * pull &
                     / self%area, self%damping / self%area), contact%slip, failed)
                 if (failed) return
                 contact%velocity = sense * contact%slip
@@ -527,40 +479,6 @@ contains
         contact%elastic = (by_rate * acceleration + sense * (tau / pressure * pressure_rate &
             + by_memory * contact%memory)) / self%alpha
     end subroutine following_contact
-
-    !> The slip rate of a law without a yield point at which `push = drag v + traction(v)`, by
-    !> Newton's method on the traction, from where the drag alone would carry the push: v is convex
-    !> in the traction.
-    pure function creep(surface, state, push, drag, pressure) result(v)
-        type(sliding_surface), intent(in) :: surface
-        type(law_state), intent(in) :: state
-        real(dp), intent(in) :: push, drag, pressure   !! push >= 0, drag >= 0
-        real(dp) :: v   !! >= 0 [L/T]
-        integer, parameter :: most_iterations = 200
-        type(load_rates) :: load
-        real(dp) :: tau, resistance, by_rate, change
-        logical :: jumps
-        integer :: i
-
-        tau = push
-        if (drag > 0.0_dp) then
-            call surface%resistance_at(state, push / drag, pressure, resistance, by_rate)
-            tau = min(tau, resistance)
-        end if
-        load = load_rates(tau, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
-        call surface%slip_rate(state, load, v, jumps)
-        if (.not. drag > 0.0_dp) return
-        do i = 1, most_iterations
-            call surface%resistance_at(state, v, pressure, resistance, by_rate)
-            if (.not. by_rate > 0.0_dp) exit   ! friction vanishes beside cohesion: the drag decides
-            change = (push - drag * v - load%traction) / (1.0_dp + drag / by_rate)
-            load%traction = load%traction + change
-            call surface%slip_rate(state, load, v, jumps)
-            if (abs(change) <= 4.0_dp * epsilon(change) * load%traction) exit
-        end do
-        ! of the two, what round-off of the traction changes less
-        if (drag > by_rate) v = max(0.0_dp, push - load%traction) / drag
-    end function creep
 
     !> What the law knows of the contact.
     pure function law_state_of(self, y, pressure) result(state)
@@ -634,92 +552,5 @@ contains
             contact, failed)
         tau = contact%traction
     end function traction
-
-    !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
-    !> cap and law change places, 3 because the law changes its form.
-    pure function switch_values(self, t, y, dy) result(g)
-        class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: t              !! [T]
-        real(dp), intent(in) :: y(controlled)
-        real(dp), intent(in) :: dy(unknowns)   !! rates there
-        real(dp) :: g(switches)
-        real(dp), parameter :: just_below = 1.0_dp - 1.0e-9_dp   !! or round-off would call it back
-        type(load_rates) :: load
-        real(dp) :: v_drive, pressure, pressure_rate, own, by_rate
-        logical :: jumps, gradual, capped
-
-        g = -1.0_dp
-        if (self%damper > 0.0_dp) then
-            if (self%follows_share() .and. self%phase /= phase_open) g(1) = share_switch(self, t, y)
-            return
-        end if
-        gradual = self%surface%traits%onset == onset_gradual
-        capped = self%surface%tau_max < huge(own)
-        if (self%phase == phase_open .or. gradual .and. .not. capped) return
-        if (gradual .and. self%rigid .and. .not. self%mass > 0.0_dp) return
-        call inputs(self, t, v_drive, pressure, pressure_rate)
-        associate (cap => self%surface%tau_max)
-            select case (self%phase)
-            case (phase_stick)
-                g(1) = abs(traction(self, t, y)) - min(cap, strength(self, y, pressure))
-            case (phase_slide)
-                if (gradual) then
-                    g(2) = self%alpha * abs(y(elastic)) - cap
-                else
-                    g(1) = -dy(slip)
-                    if (self%rigid .and. .not. self%mass > 0.0_dp) g(1) = min(cap, strength(self, &
-                        y, pressure)) - self%sense * self%stiffness * y(extension) / self%area
-                    g(3) = y(memory) - self%surface%traits%kink
-                    if (capped .and. .not. self%rigid .and. self%surface%traits%onset &
-                        /= onset_drops) then
-                        g(2) = strength(self, y, pressure) - cap
-                    end if
-                end if
-            case default
-                g(1) = -dy(slip)
-                if (.not. gradual) then
-                    g(2) = just_below * cap - strength(self, y, pressure)
-                else if (self%surface%traits%memory == 1) then
-                    g(2) = just_below * cap - y(ratio) * full_strength(self, y, pressure)
-                else if (self%rigid) then
-                    call self%surface%resistance_at(law_state_of(self, y, pressure), &
-                        max(0.0_dp, dy(slip)), pressure, own, by_rate)
-                    g(1) = -1.0_dp
-                    g(2) = just_below * cap - own
-                else
-                    load = load_rates(cap, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
-                    call self%surface%slip_rate(law_state_of(self, y, pressure), load, own, &
-                        jumps)
-                    g(2) = own - dy(slip)
-                end if
-            end select
-        end associate
-    end function switch_values
-
-    !> Positive where a subloading surface beside a damper stops to slide, or starts.
-    pure function share_switch(self, t, y) result(g)
-        class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: t   !! [T]
-        real(dp), intent(in) :: y(controlled)
-        real(dp) :: g
-        real(dp), parameter :: just_below = 1.0_dp - 1.0e-12_dp   !! or round-off would call it back
-        type(contact_motion) :: contact
-        type(damper_balance) :: balance
-        type(law_state) :: state
-        real(dp) :: v_drive, pressure, pressure_rate, pull
-        logical :: failed
-
-        call inputs(self, t, v_drive, pressure, pressure_rate)
-        pull = self%stiffness * y(extension)
-        if (self%phase == phase_stick) then
-            call damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
-            g = contact%ratio
-        else
-            balance = balance_at(self, y, pull)
-            state = law_state_of(self, y, pressure)
-            g = just_below * min(self%surface%tau_max, state%r * full_strength(self, y, &
-                pressure)) - balance%push
-        end if
-    end function share_switch
 
 end module slider_rates

@@ -5,8 +5,9 @@ module time_integrator
     use abstract_integrator, only : most_shown, step_report
     use friction_mod, only : friction_no_convergence, friction_ok, prop_alpha_t
     use chain_solver, only : chain_matrix
+    use contact_forces, only : friction_forces
     use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
-        friction_forces, slider, slider_state
+        slider, slider_state
     implicit none
     private
 

@@ -1,0 +1,98 @@
+!> Where blocks start.
+module initial_states
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use contact_forces, only : friction_forces
+    use friction_mod, only : facts => law_facts, friction_facts, prop_alpha_t, statev_mu, &
+        statev_r, statev_size, statev_u_et
+    use slider_system, only : cohesions, set_accelerations, slider, slider_state
+    implicit none
+    private
+
+    public :: displace, initial_state, initial_values, place
+
+    !> How a block starts, if not at rest on a virgin contact with a slack spring.
+    type :: initial_values
+        logical :: any_given = .false.
+        logical :: mu_given = .false.          !! or else a law with an R has its virgin one
+        real(dp) :: mu = 0.0_dp                !! friction coefficient [-]
+        real(dp) :: r = 0.0_dp                 !! similarity ratio; the friction opposes +x [-]
+        logical :: has_r = .true.              !! the law has an R; otherwise it is 0 or 1 here
+        real(dp) :: displacement = 0.0_dp      !! [L]
+        real(dp) :: velocity = 0.0_dp          !! [L/T]
+        logical :: spring_given = .false.      !! otherwise the block starts in equilibrium
+        real(dp) :: spring_force = 0.0_dp      !! [F]
+    end type initial_values
+
+contains
+
+    !> At rest, pressed on the base, no spring stretched.
+    subroutine initial_state(system, n_blocks, normal, state, status)
+        type(slider), intent(in) :: system
+        integer, intent(in) :: n_blocks
+        real(dp), intent(in) :: normal           !! normal traction at the start [F/L^2]
+        type(slider_state), intent(out) :: state
+        integer, intent(out) :: status           !! of the friction routine
+        real(dp), allocatable :: tangent(:), zero(:), virgin(:, :)
+
+        allocate (zero(n_blocks), tangent(n_blocks), virgin(n_blocks, statev_size))
+        zero = 0.0_dp
+        virgin = 0.0_dp
+        state%x = zero
+        state%v = zero
+        state%a = zero
+        state%spring = zero
+        state%friction = zero
+        state%statev = virgin
+        state%normal = normal
+        state%load = normal
+        call friction_forces(system, virgin, normal, zero, 0.0_dp, state%statev, &
+            state%friction, tangent, status)
+    end subroutine initial_state
+
+    !> Puts the blocks where the initial values say.
+    pure subroutine place(system, values, state)
+        type(slider), intent(in) :: system
+        type(initial_values), intent(in) :: values
+        type(slider_state), intent(inout) :: state   !! as `initial_state` left it
+        real(dp), dimension(size(state%x)) :: mu, alpha_t
+        real(dp), allocatable :: props(:)
+        type(facts) :: law
+        integer :: i
+
+        if (.not. values%any_given) return
+        state%x = values%displacement
+        state%v = values%velocity
+        mu = values%mu
+        do i = 1, size(mu)
+            props = system%props_of(i)
+            alpha_t(i) = props(prop_alpha_t)
+            law = friction_facts(props)
+            if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
+        end do
+        state%statev(:, statev_mu) = mu
+        if (values%has_r) state%statev(:, statev_r) = values%r
+        state%friction = mu * state%normal
+        if (allocated(system%load)) state%friction = state%friction * system%load
+        if (values%has_r) state%friction = values%r * (state%friction + cohesions(system, &
+            size(mu)))
+        state%friction = system%area * state%friction
+        state%statev(:, statev_u_et) = state%friction / (system%area * alpha_t)
+        state%spring = sum(state%friction) / size(state%friction) &
+            + system%damping * values%velocity
+        if (values%spring_given) state%spring = values%spring_force
+        state%drive = state%x(1) + state%spring(1) / system%stiffness
+        call set_accelerations(system, state)
+    end subroutine place
+
+    !> Moves blocks at the start; the drive and the contacts stay as they are.
+    pure subroutine displace(system, by, state)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: by(:)                !! one a block [L]
+        type(slider_state), intent(inout) :: state   !! as `initial_state` or `place` left it
+
+        state%x = state%x + by
+        state%spring = state%spring - system%stiffness * by
+        call set_accelerations(system, state)
+    end subroutine displace
+
+end module initial_states

@@ -1,0 +1,153 @@
+!> Where a block is in continuous time, and what states hold of that.
+module block_motion
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use friction_mod, only : facts => law_facts, friction_facts, law_state, onset_yields, &
+        prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, statev_slip, &
+        statev_status, statev_u_et
+    use law_facts, only : typical_strength
+    use run_settings, only : settings
+    use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
+        memory, phase_open, ratio, slider_equations, slip, unknowns, velocity
+    use slider_system, only : slider_state
+    implicit none
+    private
+
+    public :: fill_block, moving_block, set_growing_weights, set_up, unknowns_of
+
+    type :: moving_block
+        type(slider_equations) :: equations
+        real(dp), allocatable :: props(:)       !! constants of the friction routine
+        real(dp) :: y(unknowns) = 0.0_dp        !! where the block is
+        real(dp) :: first(unknowns) = 0.0_dp    !! rates there
+        logical :: known = .false.              !! they are up to date
+    contains
+        procedure :: synchronise
+    end type moving_block
+
+contains
+
+    !> Equations of a block with constants of its own, but for its drive and the phase of its
+    !> contact, and the sizes of its unknowns.
+    subroutine set_up(run, props, largest, equations, natural)
+        type(settings), intent(in) :: run
+        real(dp), intent(in) :: props(:)
+        real(dp), intent(in) :: largest   !! normal traction [F/L^2]
+        type(slider_equations), intent(inout) :: equations
+        real(dp), intent(out) :: natural(controlled)
+        !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
+        !> what the law remembers, how many steps are taken by the contact spring.
+        real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        type(facts) :: law
+        real(dp) :: force, stiffness
+        integer :: status
+
+        associate (eq => equations)
+            call read_surface(props, eq%surface, status)
+            eq%mass = run%mass
+            eq%stiffness = run%stiffness
+            eq%damping = run%damping
+            eq%area = run%area
+            eq%alpha = props(prop_alpha_t)
+            law = friction_facts(props)
+            eq%damper = law%damping
+            eq%rigid = run%rigid_contact
+            eq%least_pressure = 1.0e-10_dp * largest
+            eq%forward = run%loading_sense()
+            force = run%area * typical_strength(props, largest)
+            stiffness = run%stiffness
+            if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
+            natural = 1.0_dp
+            natural(extension) = force / stiffness
+            if (run%mass > 0.0_dp) natural(velocity) = force / sqrt(stiffness * run%mass)
+            natural(elastic) = force / (run%area * eq%alpha)
+            if (eq%surface%traits%weight * largest > 0.0_dp) natural(memory) = force &
+                / (run%area * largest * eq%surface%traits%weight)
+            if (eq%surface%traits%stiff) natural = natural * stiff_sizes
+        end associate
+    end subroutine set_up
+
+    !> What the errors are compared with of unknowns that grow beyond their natural sizes: their
+    !> own, but not less than the amplitude of the contact's ringing.
+    pure subroutine set_growing_weights(rtol, natural, y, weights)
+        real(dp), intent(in) :: rtol, natural(controlled), y(controlled)
+        real(dp), intent(inout) :: weights(controlled)   !! inverse of the tolerated errors
+
+        weights(velocity) = 1.0_dp / (rtol * max(natural(velocity), abs(y(velocity))))
+        weights(extension) = 1.0_dp / (rtol * max(natural(extension), abs(y(extension))))
+    end subroutine set_growing_weights
+
+    !> Puts the block where a state has it.
+    pure subroutine synchronise(self, state)
+        class(moving_block), intent(inout) :: self
+        type(slider_state), intent(in) :: state
+
+        self%y = unknowns_of(self%equations, state, 1)
+        self%y(drive_work) = state%drive_work
+        self%y(damped) = state%damped
+        self%known = .false.
+    end subroutine synchronise
+
+    !> The unknowns of a block as a state has them, but for what is known of all blocks together.
+    pure function unknowns_of(equations, state, i) result(y)
+        type(slider_equations), intent(in) :: equations
+        type(slider_state), intent(in) :: state
+        integer, intent(in) :: i   !! block
+        real(dp) :: y(unknowns)
+
+        y = 0.0_dp
+        y(extension) = state%spring(i) / equations%stiffness
+        y(velocity) = state%v(i)
+        y(elastic) = state%statev(i, statev_u_et)
+        select case (equations%surface%traits%memory)
+        case (1)
+            y(memory) = state%statev(i, statev_mu)
+            if (equations%damper > 0.0_dp) y(ratio) = state%statev(i, statev_r)
+        case (2)
+            y(memory) = state%statev(i, statev_r)
+            if (equations%surface%traits%logarithmic) y(memory) = log(y(memory))
+        case default   ! it remembers nothing
+        end select
+        y(slip) = state%statev(i, statev_slip)
+        y(dissipated) = state%statev(i, statev_dissipation)
+    end function unknowns_of
+
+    !> What a state holds of a block, but for its u_n.
+    subroutine fill_block(eq, normal, t, y, dy, i, old, new)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: normal            !! traction that is prescribed [F/L^2]
+        real(dp), intent(in) :: t                 !! [T]
+        real(dp), intent(inout) :: y(unknowns)
+        real(dp), intent(in) :: dy(unknowns)
+        integer, intent(in) :: i                  !! block
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new  !! its time and drive are given
+        type(law_state) :: state
+        real(dp) :: pressure, strength
+
+        ! what accumulates never falls, not even by round-off
+        y(slip) = max(y(slip), old%statev(i, statev_slip))
+        y(dissipated) = max(y(dissipated), old%statev(i, statev_dissipation))
+        new%x(i) = new%drive - y(extension)
+        new%spring(i) = eq%stiffness * y(extension)
+        new%friction(i) = eq%area * eq%traction(t, y)
+        new%v(i) = y(velocity)
+        new%a(i) = dy(velocity)
+        pressure = merge(0.0_dp, max(normal, eq%least_pressure), eq%phase == phase_open)
+        state = eq%law_state_of(y, pressure)
+        new%statev(i, statev_status) = 3.0_dp
+        if (eq%phase /= phase_open) new%statev(i, statev_status) = merge(2.0_dp, 1.0_dp, &
+            dy(slip) > 0.0_dp)
+        new%statev(i, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
+        new%statev(i, statev_r) = state%r
+        if (eq%surface%traits%memory == 1) then
+            new%statev(i, statev_mu) = state%mu
+        else if (pressure > 0.0_dp) then
+            strength = abs(eq%traction(t, y))
+            if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
+            new%statev(i, statev_mu) = max(0.0_dp, strength - eq%surface%cohesion) / pressure
+        end if
+        new%statev(i, statev_slip) = y(slip)
+        new%statev(i, statev_dissipation) = y(dissipated)
+    end subroutine fill_block
+
+end module block_motion

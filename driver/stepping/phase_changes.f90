@@ -1,0 +1,319 @@
+!> Where the phases of a contact in continuous time end, and what comes next (docs/theory.md,
+!> section 13).
+module phase_changes
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use block_motion, only : moving_block
+    use friction_mod, only : friction_update, law_state, load_rates, onset_drops, onset_gradual, &
+        onset_yields, prop_alpha_n, statev_r, statev_size, statev_slip, statev_status, &
+        statev_u_et, statev_u_n
+    use slider_rates, only : contact_motion, controlled, dissipated, elastic, extension, memory, &
+        phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
+        unknowns, velocity
+    use slip_balance, only : damper_balance
+    implicit none
+    private
+
+    public :: change_phase, first_root, phase_at_rest, settle, slide_on, switch_values
+
+    integer, parameter, public :: switches = 3   !! ways in which a phase can end
+
+contains
+
+    !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
+    !> cap and law change places, 3 because the law changes its form.
+    pure function switch_values(eq, t, y, dy) result(g)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: t              !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: dy(unknowns)   !! rates there
+        real(dp) :: g(switches)
+        real(dp), parameter :: just_below = 1.0_dp - 1.0e-9_dp   !! or round-off would call it back
+        type(load_rates) :: load
+        real(dp) :: v_drive, pressure, pressure_rate, own, by_rate
+        logical :: jumps, gradual, capped
+
+        g = -1.0_dp
+        if (eq%damper > 0.0_dp) then
+            if (eq%follows_share() .and. eq%phase /= phase_open) g(1) = share_switch(eq, t, y)
+            return
+        end if
+        gradual = eq%surface%traits%onset == onset_gradual
+        capped = eq%surface%tau_max < huge(own)
+        if (eq%phase == phase_open .or. gradual .and. .not. capped) return
+        if (gradual .and. eq%rigid .and. .not. eq%mass > 0.0_dp) return
+        call eq%inputs(t, v_drive, pressure, pressure_rate)
+        associate (cap => eq%surface%tau_max)
+            select case (eq%phase)
+            case (phase_stick)
+                g(1) = abs(eq%traction(t, y)) - min(cap, eq%strength(y, pressure))
+            case (phase_slide)
+                if (gradual) then
+                    g(2) = eq%alpha * abs(y(elastic)) - cap
+                else
+                    g(1) = -dy(slip)
+                    if (eq%rigid .and. .not. eq%mass > 0.0_dp) g(1) = min(cap, eq%strength(&
+                        y, pressure)) - eq%sense * eq%stiffness * y(extension) / eq%area
+                    g(3) = y(memory) - eq%surface%traits%kink
+                    if (capped .and. .not. eq%rigid .and. eq%surface%traits%onset &
+                        /= onset_drops) then
+                        g(2) = eq%strength(y, pressure) - cap
+                    end if
+                end if
+            case default
+                g(1) = -dy(slip)
+                if (.not. gradual) then
+                    g(2) = just_below * cap - eq%strength(y, pressure)
+                else if (eq%surface%traits%memory == 1) then
+                    g(2) = just_below * cap - y(ratio) * eq%full_strength(y, pressure)
+                else if (eq%rigid) then
+                    call eq%surface%resistance_at(eq%law_state_of(y, pressure), &
+                        max(0.0_dp, dy(slip)), pressure, own, by_rate)
+                    g(1) = -1.0_dp
+                    g(2) = just_below * cap - own
+                else
+                    load = load_rates(cap, 0.0_dp, 1.0_dp, pressure, 0.0_dp, .false.)
+                    call eq%surface%slip_rate(eq%law_state_of(y, pressure), load, own, &
+                        jumps)
+                    g(2) = own - dy(slip)
+                end if
+            end select
+        end associate
+    end function switch_values
+
+    !> Positive where a subloading surface beside a damper stops to slide, or starts.
+    pure function share_switch(eq, t, y) result(g)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: g
+        real(dp), parameter :: just_below = 1.0_dp - 1.0e-12_dp   !! or round-off would call it back
+        type(contact_motion) :: contact
+        type(damper_balance) :: balance
+        type(law_state) :: state
+        real(dp) :: v_drive, pressure, pressure_rate, pull
+        logical :: failed
+
+        call eq%inputs(t, v_drive, pressure, pressure_rate)
+        pull = eq%stiffness * y(extension)
+        if (eq%phase == phase_stick) then
+            call eq%damped_contact(y, pull, v_drive, pressure, pressure_rate, contact, failed)
+            g = contact%ratio
+        else
+            balance = eq%balance_at(y, pull)
+            state = eq%law_state_of(y, pressure)
+            g = just_below * min(eq%surface%tau_max, state%r * eq%full_strength(y, &
+                pressure)) - balance%push
+        end if
+    end function share_switch
+
+    !> Where a switch value first becomes positive on the cubic through the ends of a step, part of
+    !> the step.
+    function first_root(block, t, h, end, last, which) result(share)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t          !! [T]
+        real(dp), intent(in) :: h          !! length of the step [T]
+        real(dp), intent(in) :: end(unknowns), last(unknowns)   !! its end, and rates there
+        integer, intent(in) :: which       !! of the switch values
+        real(dp) :: share
+        integer, parameter :: bisections = 20
+        real(dp) :: low, middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
+        logical :: failed
+        integer :: i
+
+        low = 0.0_dp
+        share = 1.0_dp
+        change = end - block%y
+        do i = 1, bisections
+            middle = 0.5_dp * (low + share)
+            y = block%y + middle * change + middle * (middle - 1.0_dp) * ((1.0_dp - 2.0_dp &
+                * middle) * change + h * ((middle - 1.0_dp) * block%first + middle * last))
+            call block%equations%rates(t + middle * h, y, dy, failed)
+            g = switch_values(block%equations, t + middle * h, y, dy)
+            if (g(which) > 0.0_dp) then
+                share = middle
+            else
+                low = middle
+            end if
+        end do
+    end function first_root
+
+    !> Rates at the start of a step, in the phase that holds there.
+    subroutine settle(block, t)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: t   !! [T]
+        integer, parameter :: most_switches = 6
+        real(dp), parameter :: round_off = 1.0e-12_dp
+        real(dp) :: g(switches), v_drive, pressure, pressure_rate
+        logical :: failed, slides
+        integer :: i
+
+        associate (eq => block%equations)
+            do i = 1, most_switches
+                if (.not. block%known) call eq%rates(t, block%y, block%first, failed)
+                if (.not. block%known .and. .not. failed) block%known = .true.
+                if (eq%phase == phase_open) return
+                g = switch_values(eq, t, block%y, block%first)
+                if (eq%phase == phase_stick .and. .not. eq%damper > 0.0_dp) then
+                    call eq%inputs(t, v_drive, pressure, pressure_rate)
+                    if (g(1) < -round_off * eq%strength(block%y, pressure)) return
+                    slides = would_slide(block, pressure, pressure_rate)
+                    if (.not. (slides .and. (g(1) > 0.0_dp .or. .not. eq%rigid))) return
+                    call change_phase(block, t, 1)
+                else if (g(1) > 0.0_dp .or. g(2) > 0.0_dp) then
+                    call change_phase(block, t, merge(1, 2, g(1) > 0.0_dp))
+                else
+                    return
+                end if
+            end do
+        end associate
+    end subroutine settle
+
+    !> Does the traction of a contact that sticks at its strength grow faster than that?
+    pure function would_slide(block, pressure, pressure_rate) result(slides)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: pressure, pressure_rate   !! [F/L^2], [F/L^2/T]
+        logical :: slides
+        real(dp) :: strength, growth
+        type(law_state) :: healing
+
+        slides = .true.
+        if (block%equations%rigid) return
+        strength = block%equations%strength(block%y, pressure)
+        growth = 0.0_dp
+        if (strength < block%equations%surface%tau_max) then
+            healing = block%equations%surface%state_rates(block%equations%law_state_of(block%y, &
+                pressure), load_rates(strength, 0.0_dp, block%equations%alpha, pressure, &
+                pressure_rate, .false.), 0.0_dp)
+            growth = (strength - block%equations%surface%cohesion) / pressure * pressure_rate &
+                + healing%mu * pressure
+        end if
+        slides = block%equations%alpha * block%equations%sense_of(block%y(elastic)) &
+            * block%first(elastic) > growth
+    end function would_slide
+
+    !> Phase of a contact that has just closed, or come to rest.
+    pure function phase_at_rest(eq) result(phase)
+        type(slider_equations), intent(in) :: eq
+        integer :: phase
+
+        phase = merge(phase_slide, phase_stick, eq%surface%traits%onset == onset_gradual &
+            .or. eq%damper > 0.0_dp)
+    end function phase_at_rest
+
+    !> Enters the next phase.
+    subroutine change_phase(block, t, which)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: t   !! [T]
+        integer, intent(in) :: which
+        real(dp) :: v_drive, pressure, pressure_rate, strength
+
+        block%known = .false.
+        associate (eq => block%equations)
+            call eq%inputs(t, v_drive, pressure, pressure_rate)
+            if (eq%damper > 0.0_dp) then
+                if (eq%phase == phase_slide) then
+                    eq%phase = phase_stick
+                else
+                    call slide_on(block, pressure)
+                end if
+                return
+            end if
+            strength = min(eq%strength(block%y, pressure), eq%surface%tau_max)
+            if (which == 3) then
+                block%y(memory) = eq%surface%traits%kink
+            else if (eq%phase == phase_stick) then
+                eq%sense = eq%sense_of(eq%traction(t, block%y))
+                eq%phase = phase_slide
+                if (eq%surface%traits%onset == onset_yields .and. .not. strength &
+                    < eq%surface%tau_max .and. .not. eq%rigid) eq%phase = phase_capped
+                if (.not. eq%rigid) call jump(block, pressure, strength)
+            else if (which == 1) then
+                eq%phase = phase_at_rest(eq)
+                if (eq%rigid) block%y(velocity) = 0.0_dp
+            else if (eq%phase == phase_slide) then
+                eq%phase = phase_capped
+                eq%sense = eq%sense_of(block%y(elastic))
+                block%y(elastic) = eq%sense * eq%surface%tau_max / eq%alpha
+                if (eq%surface%traits%memory == 1) block%y(ratio) = min(1.0_dp, eq%surface%tau_max &
+                    / eq%full_strength(block%y, pressure))
+            else
+                if (eq%surface%traits%memory == 1) strength = block%y(ratio) &
+                    * eq%full_strength(block%y, pressure)
+                if (eq%surface%traits%memory == 1 .or. eq%surface%traits%onset &
+                    == onset_yields) then
+                    block%y(elastic) = sign(min(strength, eq%surface%tau_max) / eq%alpha, eq%sense)
+                end if
+                eq%phase = phase_slide
+                if (eq%surface%traits%memory == 2 .and. eq%surface%traits%onset &
+                    == onset_yields) call slip_at_once(block, pressure, abs(block%y(elastic)))
+            end if
+        end associate
+    end subroutine change_phase
+
+    !> A subloading surface beside a damper keeps its R when the pressure jumps, unless it sticks.
+    pure subroutine slide_on(block, pressure)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! before the jump, or now [F/L^2]
+        type(law_state) :: state
+
+        state = block%equations%law_state_of(block%y, pressure)
+        block%y(ratio) = state%r
+        block%equations%phase = phase_slide
+        block%known = .false.
+    end subroutine slide_on
+
+    !> Onset of slip under a law with a yield point. Where the resistance falls faster than the
+    !> contact spring unloads, that goes on at once to where it does not.
+    subroutine jump(block, pressure, strength)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp), intent(in) :: strength   !! [F/L^2]
+        real(dp) :: before, after, by_rate, v
+        logical :: failed
+
+        associate (eq => block%equations)
+            before = abs(block%y(elastic))
+            block%y(elastic) = eq%sense * strength / eq%alpha
+            if (eq%phase == phase_capped) return
+            if (eq%surface%traits%onset == onset_drops) then
+                call eq%find_velocity(block%y, pressure, v, failed)
+                call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), max(0.0_dp, &
+                    eq%sense * v), pressure, after, by_rate)
+                after = min(after, eq%surface%tau_max) / eq%alpha
+                block%y(elastic) = eq%sense * after
+                block%y(slip) = block%y(slip) + max(0.0_dp, before - after)
+                block%y(dissipated) = block%y(dissipated) + max(0.0_dp, 0.5_dp * eq%alpha &
+                    * (before**2 - after**2))
+            else if (eq%surface%traits%memory == 2) then
+                call slip_at_once(block, pressure, before)
+            end if
+        end associate
+    end subroutine jump
+
+    !> Slip without time, as far as the friction routine lets the contact slip, if that is far.
+    subroutine slip_at_once(block, pressure, before)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp), intent(in) :: before     !! elastic displacement, in the sense of the slip [L]
+        real(dp), parameter :: push = 1.0e-12_dp, far = 1.0e-6_dp   !! parts of that
+        real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
+        integer :: status
+
+        associate (eq => block%equations, y => block%y)
+            statev = 0.0_dp
+            statev(statev_status) = 1.0_dp
+            statev(statev_u_n) = -pressure / block%props(prop_alpha_n)
+            statev(statev_u_et) = before
+            statev(statev_r) = y(memory)
+            call friction_update([0.0_dp, push * before], 0.0_dp, block%props, statev, &
+                traction, tangent, status)
+            if (status < 0 .or. statev(statev_slip) < far * before) return
+            y(slip) = y(slip) + statev(statev_slip)
+            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
+                - statev(statev_u_et)**2)
+            y(elastic) = sign(statev(statev_u_et), y(elastic))
+            y(memory) = statev(statev_r)
+        end associate
+    end subroutine slip_at_once
+
+end module phase_changes

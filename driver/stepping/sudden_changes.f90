@@ -1,0 +1,233 @@
+!> What changes at one moment of time: a normal traction that jumps, a contact that opens or
+!> touches, slip in a time that is lost in round-off.
+module sudden_changes
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use block_motion, only : moving_block
+    use contact_forces, only : apply_normal_traction
+    use friction_mod, only : law_state, load_rates
+    use phase_changes, only : phase_at_rest, slide_on
+    use slider_rates, only : elastic, extension, memory, phase_capped, phase_open, phase_slide, &
+        phase_stick, ratio, slip, unknowns, velocity
+    use slider_system, only : slider, slider_state
+    implicit none
+    private
+
+    public :: stopped, take_load, take_off_spring
+
+contains
+
+    !> A rigid contact carries what the block's velocity, or without one the friction at the start,
+    !> asks for.
+    subroutine take_off_spring(block, start)
+        type(moving_block), intent(inout) :: block
+        type(slider_state), intent(in) :: start
+        real(dp) :: traction   !! [F/L^2]
+        logical :: jumps
+
+        associate (eq => block%equations, v => block%y(velocity))
+            eq%sense = eq%sense_of(v)
+            if (abs(v) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
+            block%y(elastic) = 0.0_dp
+            if (.not. abs(v) > 0.0_dp .and. eq%follows_traction()) then
+                traction = start%friction(1) / eq%area
+                call eq%surface%slip_rate(eq%law_state_of(block%y, start%normal), load_rates( &
+                    abs(traction), 0.0_dp, 1.0_dp, start%normal, 0.0_dp, .false.), v, jumps)
+                v = sign(v, traction)
+            end if
+            call hold_velocity(block, start%normal)
+        end associate
+    end subroutine take_off_spring
+
+    !> The traction of a rigid contact that creeps with the block's velocity, as far as its cap lets
+    !> it grow.
+    pure subroutine hold_velocity(block, pressure)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp) :: resistance, by_rate
+
+        if (.not. block%equations%follows_traction()) return
+        associate (eq => block%equations)
+            call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), &
+                abs(block%y(velocity)), pressure, resistance, by_rate)
+            if (resistance >= eq%surface%tau_max) eq%phase = phase_capped
+            eq%sense = eq%sense_of(block%y(velocity))
+            block%y(elastic) = eq%sense * min(resistance, eq%surface%tau_max) / eq%alpha
+        end associate
+    end subroutine hold_velocity
+
+    !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
+    !> can tell: friction falls to what balances the drive spring, or changes its side, at once.
+    function stopped(block) result(yes)
+        type(moving_block), intent(inout) :: block
+        logical :: yes
+        real(dp) :: pull   !! as a traction [F/L^2]
+
+        associate (eq => block%equations, y => block%y)
+            pull = eq%stiffness * y(extension) / eq%area
+            yes = eq%follows_traction() .and. sign(pull, pull * y(elastic)) &
+                < eq%alpha * abs(y(elastic))
+            if (.not. yes) return
+            y(elastic) = -y(elastic)
+            if (abs(pull) < eq%alpha * abs(y(elastic))) y(elastic) = pull / eq%alpha
+            block%known = .false.
+        end associate
+    end function stopped
+
+    !> Takes the block to the normal traction that holds from now on.
+    subroutine take_load(block, system, pressure, open_below, time_lost, state, touches)
+        type(moving_block), intent(inout) :: block
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: pressure              !! [F/L^2]
+        real(dp), intent(in) :: open_below            !! pressure that counts as none [F/L^2]
+        real(dp), intent(in) :: time_lost             !! in round-off [T]
+        type(slider_state), intent(inout) :: state
+        logical, intent(out) :: touches   !! a subloading surface: its R leaves 0, where the law
+                                          !! knows no slip, steeply
+        logical :: closed
+
+        touches = .false.
+        closed = pressure > open_below
+        associate (eq => block%equations)
+            if (closed .and. eq%phase /= phase_open) then
+                if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
+                call jump_to(block, system, pressure, time_lost, state)
+            else if (closed) then
+                eq%phase = phase_at_rest(eq)
+                touches = eq%phase == phase_slide .and. eq%surface%traits%memory == 1
+                call open_or_touch(block, pressure, touches)
+            else if (eq%phase /= phase_open) then
+                eq%phase = phase_open
+                call open_or_touch(block, pressure, touches)
+            end if
+        end associate
+    end subroutine take_load
+
+    !> A normal traction that jumps on a closed contact.
+    subroutine jump_to(block, system, pressure, time_lost, state)
+        type(moving_block), intent(inout) :: block
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: pressure    !! after it [F/L^2]
+        real(dp), intent(in) :: time_lost   !! in round-off [T]
+        type(slider_state), intent(inout) :: state
+        logical :: taken
+
+        associate (eq => block%equations)
+            call press(block, state%normal, pressure, time_lost)
+            if (eq%follows_share()) call slide_on(block, state%normal)
+            call apply_normal_traction(system, pressure, state, taken)
+            block%known = .false.
+            if (eq%damper > 0.0_dp) return
+            if (eq%phase == phase_capped) eq%phase = phase_slide
+            if (eq%rigid) then
+                call hold_velocity(block, pressure)
+                return
+            end if
+            eq%phase = phase_at_rest(eq)
+            if (taken) then
+                call block%synchronise(state)
+            else if (eq%surface%traits%stiff) then
+                call creep_at_once(block, state%time, time_lost)
+            end if
+        end associate
+    end subroutine jump_to
+
+    !> A contact that is in its new phase carries nothing at first.
+    subroutine open_or_touch(block, pressure, touches)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        logical, intent(in) :: touches     !! as a subloading surface
+        real(dp), parameter :: first_ratio = 1.0e-12_dp   !! R as surfaces meet
+
+        associate (eq => block%equations, y => block%y)
+            if (eq%rigid .and. eq%phase == phase_stick .and. abs(y(velocity)) > 0.0_dp) then
+                eq%phase = phase_slide
+                eq%sense = eq%sense_of(y(velocity))
+            end if
+            y(ratio) = 0.0_dp
+            y(elastic) = 0.0_dp
+            if (touches) y(elastic) = eq%sense_of(y(velocity)) * first_ratio &
+                * eq%full_strength(y, pressure) / eq%alpha
+            if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) y(extension) = 0.0_dp
+            call hold_velocity(block, pressure)
+            block%known = .false.
+        end associate
+    end subroutine open_or_touch
+
+    !> What the law remembers may depend on the pressure. What of it comes back in a time that no
+    !> step can follow, comes back at once.
+    subroutine press(block, before, after, time_lost)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: before, after   !! pressure [F/L^2]
+        real(dp), intent(in) :: time_lost       !! [T]
+        type(law_state) :: state, healing
+
+        associate (eq => block%equations)
+            if (.not. eq%surface%traits%logarithmic) return
+            state = eq%surface%law%pressed(eq%law_state_of(block%y, before), before, after)
+            if (state%r < time_lost) then
+                healing = eq%surface%state_rates(state, load_rates(0.0_dp, 0.0_dp, eq%alpha, &
+                    after, 0.0_dp, .false.), 0.0_dp)
+                state%r = state%r + time_lost * healing%r
+            end if
+            block%y(memory) = log(state%r)
+        end associate
+    end subroutine press
+
+    !> A creeping contact that is relieved may slip far in a time that is lost in round-off. It is
+    !> followed over its slip then, in steps in which the slip rate falls by less than a half.
+    subroutine creep_at_once(block, t, time_lost)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: t           !! [T]
+        real(dp), intent(in) :: time_lost   !! in round-off [T]
+        integer, parameter :: most_steps = 10000
+        real(dp), parameter :: far = 1.0e-3_dp   !! part of the elastic displacement
+        real(dp) :: ahead(unknowns), part, time_left, passes
+        logical :: failed
+        integer :: i
+
+        time_left = time_lost
+        call block%equations%rates(t, block%y, block%first, failed)
+        if (failed .or. block%first(slip) * time_left < far * abs(block%y(elastic))) return
+        part = far * abs(block%y(elastic))
+        do i = 1, most_steps
+            call creep(block, t, part, ahead, passes, failed)
+            if (failed) then
+                part = 0.5_dp * part
+                cycle
+            end if
+            block%y = ahead
+            time_left = time_left - passes
+            if (time_left <= 0.0_dp) exit
+            part = 1.2_dp * part
+        end do
+        block%known = .false.
+    end subroutine creep_at_once
+
+    !> A step over a slip, by Runge and Kutta's method, and the time that passes in it.
+    subroutine creep(block, t, distance, ahead, passes, failed)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t          !! [T]
+        real(dp), intent(in) :: distance   !! of the slip [L]
+        real(dp), intent(out) :: ahead(unknowns)
+        real(dp), intent(out) :: passes    !! [T]
+        logical, intent(out) :: failed     !! the slip rate falls too far in it
+        real(dp), parameter :: nodes(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
+        real(dp), parameter :: weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp] / 6.0_dp
+        real(dp) :: dy(unknowns), first_rate
+        integer :: i
+
+        ahead = block%y
+        passes = 0.0_dp
+        dy = 0.0_dp
+        do i = 1, size(nodes)
+            call block%equations%rates(t, block%y + nodes(i) * distance * dy, dy, failed)
+            if (i == 1) first_rate = dy(slip)
+            failed = failed .or. 2.0_dp * dy(slip) < first_rate
+            if (failed) return
+            passes = passes + weights(i) * distance / dy(slip)
+            dy = dy / dy(slip)
+            ahead = ahead + weights(i) * distance * dy
+        end do
+    end subroutine creep
+
+end module sudden_changes

@@ -1,0 +1,111 @@
+!> A step in continuous time that has been tried, and what a step of Rodas4 has to be looked at for
+!> beside its error.
+module trial_step
+    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use block_motion, only : moving_block
+    use slider_rates, only : damped, dissipated, elastic, extension, slip, unknowns
+    implicit none
+    private
+
+    public :: look_at, trial
+
+    type :: trial
+        real(dp) :: h                !! [T]
+        real(dp) :: y(unknowns)      !! its end
+        real(dp) :: last(unknowns)   !! rates there
+        real(dp) :: error            !! part of the tolerated one
+        real(dp) :: stiffness        !! h times the size of the equations' derivative
+        integer :: switch            !! which way its phase has ended; 0: it has not
+    end type trial
+
+contains
+
+    !> Looks at a step of Rodas4 with an error that is tolerated.
+    subroutine look_at(block, t, weight, tried)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t        !! of its start [T]
+        real(dp), intent(in) :: weight   !! inverse of the tolerated error of the contact's spring
+        type(trial), intent(inout) :: tried
+        logical :: failed
+
+        call block%equations%rates(t + tried%h, tried%y, tried%last, failed)
+        if (failed) tried%error = huge(tried%error)
+        if (wild(block, weight, tried)) tried%error = max(tried%error, 2.0_dp**4)
+        if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
+        if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, tried)
+    end subroutine look_at
+
+    !> The traction of a rigid contact that creeps comes to balance the faster the slower it slips.
+    !> Where neither inertia nor damper has a say, it is the balance's. Else the slip rate may grow
+    !> by so much only: where the traction comes to balance far more slowly at the end of a step
+    !> than at its start, the estimate of the error sees nothing.
+    subroutine balance(block, t, tried)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp), parameter :: no_say = 1.0e-8_dp   !! part
+        real(dp), parameter :: most = 3.0_dp        !! logarithm of the growth
+        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
+        logical :: failed
+
+        associate (eq => block%equations, before => block%first(slip), &
+            after => tried%last(slip))
+            call eq%inputs(t + tried%h, v_drive, pressure, pressure_rate)
+            call eq%surface%resistance_at(eq%law_state_of(tried%y, pressure), after, pressure, &
+                resistance, by_rate)
+            if (max(eq%mass, eq%damping * tried%h) < no_say * tried%h * by_rate * eq%area) then
+                tried%y(elastic) = eq%stiffness * tried%y(extension) / (eq%area * eq%alpha)
+                call eq%rates(t + tried%h, tried%y, tried%last, failed)
+                if (failed) tried%error = huge(tried%error)
+            else if (after > before) then
+                tried%error = max(tried%error, (log(after / max(before, tiny(before))) / most)**4)
+            end if
+        end associate
+    end subroutine balance
+
+    !> Have the stages of a step been far from where it starts and ends? Then what slip dissipates
+    !> over the slip is no traction of these.
+    pure function wild(block, weight, tried)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: weight   !! inverse of the tolerated error of the contact's spring
+        type(trial), intent(in) :: tried
+        logical :: wild
+        real(dp), parameter :: far = 1.5_dp, round_off = 16.0_dp * epsilon(1.0_dp)
+        real(dp) :: tractions(2), way, work, least
+
+        associate (eq => block%equations, before => block%y, after => tried%y)
+            way = after(slip) - before(slip)
+            work = after(dissipated) - before(dissipated)
+            tractions = eq%alpha * abs([before(elastic), after(elastic)])
+            wild = .false.
+            if (eq%damper > 0.0_dp .or. .not. maxval(tractions) > 0.0_dp) return
+            if (way * weight <= 1.0_dp .or. way <= round_off * after(slip)) return
+            least = minval(tractions) * (way - round_off * after(slip))
+            wild = work - round_off * after(dissipated) > far * maxval(tractions) * way .or. &
+                far * (work + round_off * after(dissipated)) < least
+        end associate
+    end function wild
+
+    !> What damper and slip take of a block without mass, whose velocity is a small difference of
+    !> forces: within a long step of Rodas4 it is not well enough known to be squared, or multiplied
+    !> by a traction that changes, its mean is.
+    pure subroutine damp(block, t, tried)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp) :: way, v(2)
+
+        associate (d => block%equations%drive, i => block%equations%piece)
+            way = tried%h * 0.5_dp * (d%drive_velocity(t, i) + d%drive_velocity(t + tried%h, i)) &
+                - (tried%y(extension) - block%y(extension))
+            v = [d%drive_velocity(t, i) - block%first(extension), &
+                d%drive_velocity(t + tried%h, i) - tried%last(extension)]
+        end associate
+        tried%y(damped) = block%y(damped) + 0.5_dp * block%equations%damping * sum(v) * way
+        associate (eq => block%equations)
+            tried%y(dissipated) = block%y(dissipated) + 0.5_dp * abs(eq%traction(t, block%y) &
+                + eq%traction(t + tried%h, tried%y)) * (tried%y(slip) - block%y(slip))
+        end associate
+    end subroutine damp
+
+end module trial_step
