@@ -5,6 +5,7 @@ STICKSLIP_LIBRARY, the library there, which tells the laws.
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -57,6 +58,24 @@ class Installed(unittest.TestCase):
                   f'-DCMAKE_PREFIX_PATH={self.prefix}', env={**os.environ, 'FC': FORTRAN})
         self.call(os.environ['CMAKE'], '--build', build)
         return self.last_line(self.call(build / 'slide'))
+
+    def find(self, *wanted):
+        """What find_package says of the installed package."""
+        project = self.folder / 'find'
+        shutil.rmtree(project, ignore_errors=True)
+        project.mkdir()
+        (project / 'CMakeLists.txt').write_text('cmake_minimum_required(VERSION 3.21)\nproject(find LANGUAGES C)\n'
+            f'find_package(stickslip {" ".join(wanted)})\n'
+            'message(STATUS "found=${stickslip_FOUND}, ${stickslip_NOT_FOUND_MESSAGE}")\n')
+        output = self.call(os.environ['CMAKE'], '-S', project, '-B', project / 'build', f'-DCMAKE_PREFIX_PATH={self.prefix}')
+        return re.search('found=(.*)', output).group(1)
+
+    def test_the_package_is_found_by_version_and_components(self):
+        for wanted in ((), ('0.1',), ('COMPONENTS', 'shared'), ('0.1', 'COMPONENTS', 'static', 'shared'),
+                       ('OPTIONAL_COMPONENTS', 'other')):
+            self.assertRegex(self.find(*wanted), '^(1|TRUE), $')
+        self.assertRegex(self.find('0.2'), '^(0|FALSE), ')
+        self.assertRegex(self.find('COMPONENTS', 'shared', 'other'), '^(0|FALSE), .*components shared and static, but no other')
 
     def pkg_config(self, *query):
         if shutil.which('pkg-config') is None:
