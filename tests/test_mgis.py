@@ -183,6 +183,14 @@ class Mgis(unittest.TestCase):
             for i in range(6):
                 self.assertAlmostEqual(result.tangent[i][j], (sides[0][i] - sides[1][i]) / (2 * step), delta=1e-4)
 
+    def test_the_energy_in_the_plane_of_a_layer_does_not_drown_in_its_slip(self):
+        for hypothesis, in_plane in (('Tridimensional', [0, 1, 3]), ('PlaneStrain', [0, 2])):
+            layer, strain = behaviour('Coulomb', hypothesis, layer=True), strain_of((1e-3, 0, 0), hypothesis)
+            strain = [1e-9 if i in in_plane else 5.0 if i == places(hypothesis)[0] else 0.0 for i in range(len(strain))]
+            result = layer.integrate([0.0] * layer.size, strain, properties('Coulomb', layer=True), [0.0] * 8, 0.1)
+            expected = 0.5 * MODULUS * len(in_plane) * 1e-18   # the layer is open: nothing else is stored
+            self.assertAlmostEqual(result.energies[0] / expected, 1.0, delta=1e-12)
+
     def test_a_prediction_integrates_nothing_and_a_virgin_point_predicts_its_springs(self):
         zone = behaviour('Coulomb', 'Tridimensional')
         for asked in (-1.0, -2.0, -3.0, 99.0):

@@ -123,12 +123,15 @@ static double squares(const double *x, int n)
 /* Twice the elastic energy in the plane of a layer, over its modulus. */
 static double in_plane_strain(const geometry *form, const double *strain)
 {
-    double sum = squares(strain, form->size);
-    int i;
+    double sum = 0;
+    int i, j;
 
-    for (i = 0; i < form->contact; i++)
-        sum -= squares(strain + form->place[i], 1);
-    return sum > 0 ? sum : 0;
+    for (i = 0, j = 0; i < form->size; i++)
+        if (j < form->contact && i == form->place[j])
+            j++;   /* places are in ascending order */
+        else
+            sum += strain[i] * strain[i];
+    return sum;
 }
 
 static void put_results(const behaviour_data *data, const geometry *form, double thickness, double modulus,
