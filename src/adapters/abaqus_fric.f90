@@ -2,7 +2,8 @@
 !>
 !>     *FRICTION, USER, DEPVAR=8, PROPERTIES=9, UNSYMM   with the constants of `friction_update`
 !>
-!> Abaqus leaves the routine out while the contact is open, so mu does not recover then.
+!> Abaqus leaves the routine out while the contact is open, so mu does not recover then. In the
+!> increment that closes it the routine only notes that it was open.
 subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnewdt, statev, &
     dgam, taulm, press, dpress, ddpddh, slip, kstep, kinc, time, dtime, noel, ciname, slname, &
     msname, npt, node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, &
@@ -36,15 +37,19 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     real(wp) :: state(statev_size), start(statev_size), second
     integer :: status, last
 
-    if (lm == was_open) return
-    lm = relative_motion
     status = friction_bad_size
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
-        if (nfdir == 2) call rotate_tangential(drot, state)
-        if (all(abs(tau) <= 0.0_wp)) call forget_elastic(props, state)
-        start = state
-        call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
+        if (lm == was_open) then
+            call forget_elastic(props, state, status)
+        else
+            if (nfdir == 2) call rotate_tangential(drot, state)
+            ! a displacement without its stress: open since, although LM does not say so
+            if (all(abs(tau) <= 0.0_wp) .and. stored(state) > 0.0_wp) call forget_elastic(props, &
+                state, status)
+            start = state
+            call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
+        end if
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stdb_abqerr(-3, error_text('FRIC', status), [noel, npt], time, [ciname(1:8)])
@@ -53,6 +58,9 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
     if (status < 0) return
 
+    statev(1:statev_size) = state
+    if (lm == was_open) return
+    lm = relative_motion
     last = statev_u_et + nfdir - 1
     dslip = dgam - (state(statev_u_et:last) - start(statev_u_et:last))
     second = 0.0_wp
@@ -60,5 +68,15 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     sed = elastic_energy(props, 0.0_wp, state(statev_u_et), second)
     sfd = state(statev_dissipation) - start(statev_dissipation)
     ddtddt = 0.0_wp
-    statev(1:statev_size) = state
+
+contains
+
+    !> Size of the elastic displacement.
+    pure function stored(state)
+        real(wp), intent(in) :: state(statev_size)
+        real(wp) :: stored
+
+        stored = abs(state(statev_u_et)) + abs(state(statev_u_et + 1))
+    end function stored
+
 end subroutine stickslip_fric

@@ -8,14 +8,19 @@
 !> cohesive element (ntens 2 or 3). Under NLGEOM a layer of solid elements, without *ORIENTATION,
 !> may slide as far as it likes, as its strain increments are those of the deformed layer; but it
 !> must not turn.
+!>
+!> In a linear perturbation step the layer has the stiffness of the base state, moves elastically
+!> from where it stands, and keeps its state.
 subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, &
     drpldt, stran, dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &
     nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, &
     jstep, kinc)
-    use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, stdb_abqerr
+    use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, &
+        stdb_abqerr, usable
     use friction_kinds, only : wp
     use friction_layer, only : layer_update
-    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
+    use friction_mod, only : friction_bad_increment, friction_bad_size, &
+        friction_no_convergence, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! direct, shear and all components
     integer, intent(in) :: nstatv, nprops, noel, npt, layer, kspt, jstep(4), kinc
@@ -30,6 +35,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
         dfgrd0(3, 3), dfgrd1(3, 3)
     character(len=80), intent(in) :: cmname
     integer, parameter :: large_displacements = 1   ! in jstep(3)
+    integer, parameter :: perturbation = 1          ! in jstep(4)
     real(wp), parameter :: largest_tilt = 1.0e-3_wp
     real(wp) :: state(statev_size)
     integer :: status
@@ -45,9 +51,13 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     status = friction_bad_size
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
-        if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
-        call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &
-            spd, status)
+        if (jstep(4) == perturbation) then
+            call perturb_layer()
+        else
+            if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
+            call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &
+                spd, status)
+        end if
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call refuse(error_text('UMAT', status))
@@ -57,6 +67,25 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     if (status >= 0) statev(1:statev_size) = state
 
 contains
+
+    !> The stiffness of the base state, which is elastic as nothing slides without time, and the
+    !> stress that follows from it.
+    subroutine perturb_layer()
+        real(wp) :: carried(ntens), still(ntens), energies(2)
+        integer :: j
+
+        status = friction_bad_increment
+        if (.not. all(usable(dstran))) return
+        carried = stress
+        still = 0.0_wp
+        call layer_update(ndi, nshr, nprops, props, still, 0.0_wp, state, carried, ddsdde, &
+            energies(1), energies(2), status)
+        if (status < 0) return
+        state = statev(1:statev_size)
+        do j = 1, ntens
+            stress = stress + ddsdde(:, j) * dstran(j)
+        end do
+    end subroutine perturb_layer
 
     !> How far the fibres of the layer's plane have turned towards its normal.
     pure function tilt()

@@ -40,8 +40,8 @@ subroutine stickslip_vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, 
     integer, intent(in) :: jslvuid(*), jmstuid(*), jconmstid(*)
     character(len=80), intent(in) :: surfint, surfslv, surfmst
     type(explicit_point) :: point
+    integer, parameter :: many = 4096
     real(wp) :: force(2)
-    logical :: in_contact
     integer :: c, i, status
 
     status = friction_bad_size
@@ -52,8 +52,6 @@ subroutine stickslip_vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, 
     point = explicit_point(ndir, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, dtimprev)
     do c = 1, ncontact
         i = jconslvid(c)
-        ftangential(:, c) = 0.0_wp
-        if (.not. areaslv(i) > 0.0_wp) cycle
         point%along(1:ndir) = dircossl(:, c)
         point%normal(1:ndir) = dircosn(:, c)
         point%slip(1:nfricdir) = dslipfric(1:nfricdir, c)
@@ -67,20 +65,35 @@ subroutine stickslip_vfric(ftangential, statev, kstep, kinc, ncontact, nfacnod, 
         end if
         ftangential(:, c) = force(1:nfricdir)
     end do
-    do i = 1, nslvnod
-        in_contact = .false.
-        do c = 1, ncontact
-            in_contact = in_contact .or. (jconslvid(c) == i .and. areaslv(i) > 0.0_wp)
-        end do
-        if (in_contact) cycle
-        call rest_out_of_contact(dtimprev, props, statev(1:statev_size, i), status)
-        if (status < 0) then
-            call refuse(i)
-            return
-        end if
+    do i = 1, nslvnod, many
+        call rest_among(i, min(i + many - 1, nslvnod))
+        if (status < 0) return
     end do
 
 contains
+
+    !> Those of the points first to last that are not in contact. Looked for many at a time: one by
+    !> one, large surfaces would take a time that goes with the square of their points.
+    subroutine rest_among(first, last)
+        integer, intent(in) :: first, last   !! places in the surface
+        logical :: in_contact(many)
+        integer :: c, i
+
+        in_contact = .false.
+        do c = 1, ncontact
+            i = jconslvid(c)
+            if (i < first .or. i > last) cycle
+            in_contact(i - first + 1) = areaslv(i) > 0.0_wp
+        end do
+        do i = first, last
+            if (in_contact(i - first + 1)) cycle
+            call rest_out_of_contact(dtimprev, props, statev(1:statev_size, i), status)
+            if (status < 0) then
+                call refuse(i)
+                return
+            end if
+        end do
+    end subroutine rest_among
 
     subroutine refuse(place)
         integer, intent(in) :: place   !! in the surface; 0 for all

@@ -56,8 +56,6 @@ subroutine stickslip_vfriction(ftangential, state, nblock, nblockanal, nblockedg
     point = explicit_point(ndir, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
         rdata(time_increment))
     do c = 1, nblock
-        ftangential(:, c) = 0.0_wp
-        if (.not. areacont(c) > 0.0_wp) cycle
         point%along(1:ndir) = dircossl(:, c)
         point%normal(1:ndir) = dircosn(:, c)
         point%slip(1:nfricdir) = dslipfric(1:nfricdir, c)

@@ -6,9 +6,11 @@
 !> elastic tangential displacement as a vector in global axes; the normal displacement is Abaqus's
 !> own.
 module friction_explicit
-    use friction_host, only : host_tangential
+    use friction_host, only : host_tangential, usable
     use friction_kinds, only : wp
-    use friction_mod, only : friction_zero_time_increment, statev_size, statev_u_et, statev_u_n
+    use friction_law_constants, only : positive
+    use friction_mod, only : friction_bad_increment, friction_ok, friction_zero_time_increment, &
+        statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -22,13 +24,13 @@ module friction_explicit
         real(wp) :: slip(2)          !! increment, host's local axes [L]
         real(wp) :: stick_force      !! that would prevent the slip [F]
         real(wp) :: normal_force     !! [F]
-        real(wp) :: area             !! > 0 [L^2]
+        real(wp) :: area             !! [L^2]
         real(wp) :: dt               !! [T]
     end type explicit_point
 
 contains
 
-    !> The friction force in the host's local axes, against the slip.
+    !> The friction force in the host's local axes, against the slip; none where there is no area.
     pure subroutine slide_in_contact(point, props, statev, force, status)
         type(explicit_point), intent(in) :: point
         real(wp), intent(in), contiguous :: props(:)     !! constants of the friction routine
@@ -39,6 +41,13 @@ contains
         real(wp) :: du(2), tau(2), by_du(2, 2), by_p(2), pressure
         integer :: n
 
+        status = friction_bad_increment
+        if (.not. (usable(point%area) .and. usable(point%normal_force) &
+            .and. usable(point%stick_force))) return
+        if (point%area > 0.0_wp .and. point%area < positive) return   ! the pressure overflows
+        status = friction_ok
+        force = 0.0_wp
+        if (.not. point%area > 0.0_wp) return
         n = point%ndir - 1
         host_axes = tangential_axes(point%ndir, point%along, point%normal)
         own_axes = tangential_axes(point%ndir, surface_axis(point%ndir, point%normal), point%normal)

@@ -1,14 +1,15 @@
 !> What several adapters need between a host and `friction_mod`. No physics.
 module friction_host
-    use friction_kinds, only : wp
-    use friction_mod, only : array_sizes, friction_message, friction_no_convergence, friction_ok, &
-        friction_snap_back, friction_tangential, friction_zero_time_increment, prop_alpha_n, &
-        prop_alpha_t, statev_size, statev_status, statev_u_et, statev_u_n, update_arrays
+    use friction_kinds, only : largest, wp
+    use friction_mod, only : array_sizes, friction_bad_increment, friction_message, &
+        friction_no_convergence, friction_ok, friction_snap_back, friction_tangential, &
+        friction_zero_time_increment, prop_alpha_n, prop_alpha_t, statev_size, statev_status, &
+        statev_u_et, statev_u_n, update_arrays
     implicit none
     private
 
     public :: append, append_number, cut_factor, elastic_energy, error_text, forget_elastic, &
-        host_tangential, host_update, interface_update, rotate_tangential, used_length
+        host_tangential, host_update, interface_update, rotate_tangential, usable, used_length
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
@@ -44,8 +45,9 @@ module friction_host
 contains
 
     !> `friction_update`, also for a host that asks for the forces as they stand, with neither time
-    !> nor motion. Laws of the slip rate cannot do without time; an instant leaves all as it is.
-    !> Sizes are explicit: what has none is copied in and out.
+    !> nor motion. Laws of the slip rate and dampers cannot do without time; an instant leaves all
+    !> as it is, and the contact is elastic (a damper would be next to rigid in it). Sizes are
+    !> explicit: what has none is copied in and out.
     pure subroutine host_update(ndir, du, dtime, nprops, props, statev, traction, tangent, status)
         integer, intent(in) :: ndir                     !! 2 or 3
         real(wp), intent(in) :: du(ndir)           !! as in `friction_update`, and so on [L]
@@ -56,12 +58,19 @@ contains
         real(wp), intent(inout) :: traction(ndir)       !! [F/L^2]
         real(wp), intent(inout) :: tangent(ndir, ndir)  !! [F/L^3]
         integer, intent(out) :: status
+        integer :: i
 
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, dtime, props, statev, &
             traction, tangent, status)
         if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, instant, props, statev, &
             traction, tangent, status)
+        if (status < 0) return
+        tangent = 0.0_wp
+        tangent(1, 1) = props(prop_alpha_n)
+        do i = 2, ndir
+            tangent(i, i) = props(prop_alpha_t)
+        end do
     end subroutine host_update
 
     !> The same of `friction_tangential`.
@@ -75,10 +84,17 @@ contains
         real(wp), intent(inout), contiguous :: by_du(:, :)   !! [F/L^3]
         real(wp), intent(inout), contiguous :: by_p(:)       !! [-]
         integer, intent(out) :: status
+        integer :: i
 
         call friction_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
         if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
         call friction_tangential(du, pressure, instant, props, statev, tau, by_du, by_p, status)
+        if (status < 0) return
+        by_p = 0.0_wp
+        by_du = 0.0_wp
+        do i = 1, size(du)
+            by_du(i, i) = props(prop_alpha_t)
+        end do
     end subroutine host_tangential
 
     !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u.
@@ -94,12 +110,12 @@ contains
     end subroutine rotate_tangential
 
     !> The contact was open since the last call: what was stored elastically is gone. How the law
-    !> takes that is its own affair; constants or a state that it refuses are left for the update.
-    pure subroutine forget_elastic(props, statev)
+    !> takes that is its own affair.
+    pure subroutine forget_elastic(props, statev, status)
         real(wp), intent(in), contiguous :: props(:)       !! constants of the friction routine
         real(wp), intent(inout), contiguous :: statev(:)   !! state at the start of the increment
+        integer, intent(out) :: status                     !! of the friction routine
         real(wp) :: tau(2), by_du(2, 2), by_p(2)
-        integer :: status
 
         call friction_tangential([0.0_wp, 0.0_wp], -1.0_wp, 0.0_wp, props, statev, tau, by_du, &
             by_p, status)
@@ -123,13 +139,18 @@ contains
         real(wp), parameter :: no_master = 1.0e30_wp   !! a gap as wide as this is to nothing
         real(wp) :: du(3), u_n
         integer :: i
+        logical :: beside_nothing
 
+        status = friction_bad_increment
+        if (.not. usable(position(1))) return
+        beside_nothing = -position(1) > no_master
+        if (.not. (beside_nothing .or. all(usable(position) .and. usable(increment)))) return
         u_n = -(position(1) - increment(1))
         du(1) = -increment(1)
         do i = 2, ndir
             du(i) = increment(i)
         end do
-        if (-position(1) > no_master) then   ! open, whatever the increment says
+        if (beside_nothing) then   ! open, whatever the rest says
             u_n = no_master
             du = 0.0_wp
         else if (u_n > no_master) then       ! just found: take it as touching at the end
@@ -163,6 +184,15 @@ contains
                 tangent, status)
         end if
     end subroutine place_point
+
+    !> Is a number finite and not too large? Read from the exponent, so that a NaN raises no
+    !> exception in the host.
+    elemental function usable(x)
+        real(wp), intent(in) :: x
+        logical :: usable
+
+        usable = exponent(x) <= exponent(largest)
+    end function usable
 
     !> Elastic energy per area held by the contact springs.
     pure function elastic_energy(props, u_n, u_et1, u_et2) result(energy)

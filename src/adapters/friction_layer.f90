@@ -2,8 +2,8 @@
 !> UMATs of Abaqus and CalculiX share. Nothing here is allocated: components are gathered one by
 !> one.
 module friction_layer
-    use friction_host, only : elastic_energy, host_update
-    use friction_kinds, only : largest, wp
+    use friction_host, only : elastic_energy, host_update, usable
+    use friction_kinds, only : wp
     use friction_law_constants, only : positive
     use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_size, &
         friction_ok, prop_alpha_t, statev_dissipation, statev_size, statev_u_et, statev_u_n
@@ -149,15 +149,6 @@ contains
         end do
         usable_ = .true.
     end function usable_in_plane
-
-    !> Is a number finite and not too large? Read from the exponent, so that a NaN raises no
-    !> exception in the host.
-    pure function usable(x)
-        real(wp), intent(in) :: x
-        logical :: usable
-
-        usable = exponent(x) <= exponent(largest)
-    end function usable
 
     pure function components(ndi, nshr) result(at)
         integer, intent(in) :: ndi, nshr

@@ -73,18 +73,20 @@ contains
     end subroutine call_uinter
 
     subroutine call_umat(ndi, nshr, props, dstran, dtime, drot, statev, stress, ddsdde, answer, &
-        deformation)
+        deformation, perturbation)
         integer, intent(in) :: ndi, nshr
         real(dp), intent(in) :: props(:), dstran(:), dtime, drot(3, 3)
         real(dp), intent(inout) :: statev(8), stress(:), ddsdde(:, :)
         type(umat_answer), intent(inout) :: answer
         real(dp), intent(in), optional :: deformation(3, 3)   !! gradient at the end, under NLGEOM
+        logical, intent(in), optional :: perturbation
         real(dp) :: gradient(3, 3), zero(36), scd, rpl
         integer :: step(4)
 
         zero = 0.0_dp
         step = [1, 1, 0, 0]
         gradient = 0.0_dp
+        if (present(perturbation)) step(4) = merge(1, 0, perturbation)
         if (present(deformation)) then
             step(3) = 1
             gradient = deformation
