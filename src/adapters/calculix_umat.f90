@@ -10,6 +10,8 @@
 !> coupling is left out of the stiffness (not of the stress).
 !>
 !> Under NLGEOM strain and stress are those of Green-Lagrange and Piola-Kirchhoff.
+!>
+!> In a perturbation step (*FREQUENCY) the layer is elastic about the base state, which stays.
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
@@ -38,34 +40,39 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     character(len=80), intent(in) :: cmname
     character(len=*), parameter :: rotated = '@ABAQUSNL'
     integer, parameter :: large_displacements = 1     ! in jstep(3)
-    real(wp) :: increment(6), dt, elastic, dissipated
+    integer, parameter :: perturbation = 1            ! in jstep(4)
+    real(wp) :: state(statev_size), start(6), increment(6), dt, elastic, dissipated
     integer :: status
+    logical :: perturbed
 
     if (cmname(1:len(rotated)) == rotated) call stop_with_cause('stickslip, UMAT: ' // rotated &
         // '_STICKSLIP hands over logarithmic strain, whose axes turn with the slip; write ' &
         // '@ABAQUS_STICKSLIP, with or without NLGEOM')
     ! At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
-    ! the step, any dtime, and the whole strain as its increment.
+    ! the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
+    ! a perturbation step is about, and then for the stress of each mode, with that mode's strain.
     status = friction_bad_size
     if (nstatv >= statev_size .and. ntens == 6) then
+        state = statev(1:statev_size)
+        perturbed = jstep(4) == perturbation
+        start = stran
         increment = dstran
         dt = dtime
-        if (time(1) < 0.0_wp) dt = 0.0_wp
+        if (time(1) < 0.0_wp .or. perturbed) then   ! from the strain to itself
+            start = stran + dstran
+            increment = 0.0_wp
+            dt = 0.0_wp
+        end if
         if (jstep(3) == large_displacements) then
-            if (time(1) < 0.0_wp) then   ! from the strain to itself
-                increment = 0.0_wp
-                call finite_layer_update(nprops, props, stran + dstran, increment, dt, statev, &
-                    stress, ddsdde, status)
-            else
-                call finite_layer_update(nprops, props, stran, increment, dt, statev, stress, &
-                    ddsdde, status)
-            end if
+            call finite_layer_update(nprops, props, start, increment, dt, state, stress, ddsdde, &
+                status)
         else
-            if (time(1) < 0.0_wp) increment = 0.0_wp
-            call layer_update(ndi, nshr, nprops, props, increment, dt, statev, stress, ddsdde, &
+            call layer_update(ndi, nshr, nprops, props, increment, dt, state, stress, ddsdde, &
                 elastic, dissipated, status)
             if (status >= 0) ddsdde(5:6, 3) = 0.0_wp
+            if (status >= 0 .and. perturbed) call linear_stress()
         end if
+        if (.not. perturbed) statev(1:statev_size) = state
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stop_with_cause(error_text('UMAT', status))
@@ -74,6 +81,15 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)
 
 contains
+
+    !> The stress that a strain makes about the base state of a perturbation step.
+    subroutine linear_stress()
+        integer :: i
+
+        do i = 1, 6
+            stress(i) = sum(ddsdde(i, :) * dstran)
+        end do
+    end subroutine linear_stress
 
     !> Friction that depends on the direction has an unsymmetric stiffness also within the surface.
     !> Of its symmetric part alone Newton's iterations go round in circles; with a small share of

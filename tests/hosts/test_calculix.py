@@ -46,16 +46,21 @@ def run_deck(name, folder, friction, change=lambda text: text):
     return run_text(change(MATERIAL.sub(material(friction), deck)), folder, name)
 
 
-def run_text(deck, folder, name):
-    """Runs a deck; gives its tables [(title, time, rows)]."""
+def solve(deck, folder, name):
+    """Runs a deck; gives what it printed into its .dat file."""
     (folder / f'{name}.inp').write_text(deck)
     library = pathlib.Path(os.environ['STICKSLIP_CALCULIX']).parent
     result = subprocess.run([CCX, name], cwd=folder, text=True, capture_output=True, check=False,
                             env={**os.environ, 'LD_LIBRARY_PATH': str(library), 'OMP_NUM_THREADS': '1'})
     if 'Job finished' not in result.stdout:
         raise AssertionError(result.stdout[-2000:])
+    return (folder / f'{name}.dat').read_text()
+
+
+def run_text(deck, folder, name):
+    """Runs a deck; gives its tables [(title, time, rows)]."""
     tables = []
-    for line in (folder / f'{name}.dat').read_text().splitlines():
+    for line in solve(deck, folder, name).splitlines():
         heading = HEADING.match(line)
         if heading:
             tables.append((heading.group(1), float(heading.group(2)), []))
@@ -180,6 +185,31 @@ class CalculiX(unittest.TestCase):
             self.assertAlmostEqual(forces[''][2], -11.765, delta=1e-3)
             for found, expected in zip(forces[', NLGEOM'], forces['']):
                 self.assertAlmostEqual(found, expected, delta=1e-3 * 11.765)
+
+    def test_frequencies_after_slip_are_those_of_the_contact_springs(self):
+        """In a perturbation step the layer is elastic, whatever slid before; a layer of an elastic material is the
+        reference. CalculiX adds what the pressed and sheared state does to the stiffness."""
+        def with_density(deck):
+            return re.sub(r'(\*ELASTIC\n.*\n|(?=\*DEPVAR))', r'\1*DENSITY\n7.8E-9\n', deck)
+
+        def frequencies(deck, name):
+            rows = solve(deck, self.folder, name).split('E I G E N V A L U E   O U T P U T')[1].splitlines()
+            return [float(row.split()[3]) for row in rows if re.match(r' +[1-4] +\S+ +\S+ +\S+ +\S+$', row)]
+
+        deck = with_density((EXAMPLES / 'block_on_block.inp').read_text())
+        layer = '*ELASTIC, TYPE=ORTHO\n1., 0., 1., 0., 0., 100., .5, 80.,\n80.\n'
+        elastic = re.sub(r'\*USER MATERIAL.*?(?=\*DENSITY)', layer, deck[:deck.index('*STEP')], flags=re.DOTALL)
+        elastic = re.sub(r'\*DEPVAR\n8\n', '', elastic).replace('@ABAQUS_STICKSLIP', 'SPRINGS')
+        frequency = '*FREQUENCY\n4\n'
+        wanted = frequencies(f'{elastic}*STEP\n{frequency}*BOUNDARY\nTOP, 1, 3\n*END STEP\n', 'springs')
+        self.assertEqual(len(wanted), 4)
+        for option, bound in (('', 0.01), (', NLGEOM', 0.002)):
+            slid = deck.replace('*STEP, INC', f'*STEP{option}, INC')
+            found = frequencies(f'{slid}*STEP, PERTURBATION\n{frequency}*END STEP\n', 'slid')
+            off = max(abs(a / b - 1) for a, b in zip(found, wanted))
+            print(f'  CalculiX, frequencies about a contact that has slid{option}: {off:.1e} off those of its springs')
+            self.assertEqual(len(found), 4)
+            self.assertLess(off, bound)
 
     def test_orthotropic_friction_converges_under_uneven_pressing(self):
         for name, constants in (('associated, ratio 0.9', [0, 0.9, 0]), ('associated, ratio 0.5', [0, 0.5, 0]),
