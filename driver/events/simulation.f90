@@ -6,7 +6,7 @@ module simulation
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, load_factors
-    use energies, only : energy_balance, let_go, take_stock
+    use energies, only : energy_balance, jumped, let_go, take_stock
     use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
         statev_u_et
     use initial_states, only : displace, initial_state, place
@@ -31,7 +31,8 @@ module simulation
         integer :: taken = 0                   !! steps
         integer :: snap_backs = 0              !! steps that saw several equilibria
         real(dp) :: energy_at_start = 0.0_dp   !! held then, in all forms [F L]
-        real(dp) :: let_go = 0.0_dp            !! lost by contact springs when they opened [F L]
+        real(dp) :: let_go = 0.0_dp            !! lost by contact springs when they opened or
+                                               !! jumped, beyond what states of friction tell [F L]
         real(dp) :: most_work = 0.0_dp         !! of the drive, whichever way [F L]
         logical :: resumed = .false.           !! it has been read from a checkpoint
         character(len=:), allocatable :: problem   !! why it cannot start; or empty
@@ -94,6 +95,8 @@ contains
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
             live%taken = live%taken + 1
             live%let_go = live%let_go + let_go(live%steps%system, live%state, live%other)
+            if (.not. live%steps%in_rates) live%let_go = live%let_go + jumped(live%steps%system, &
+                live%state, live%other)
             live%most_work = max(live%most_work, abs(live%other%drive_work))
             call swap_states(live%state, live%other)
             news%complete = report%complete

@@ -1,13 +1,13 @@
 !> Where the work of the drive goes: held by springs, contacts and motion, or lost.
 module energies
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_status, &
-        statev_u_et, statev_u_n
+    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_slip, &
+        statev_status, statev_u_et, statev_u_n
     use slider_system, only : slider, slider_state
     implicit none
     private
 
-    public :: account, energy_balance, let_go, take_stock
+    public :: account, energy_balance, jumped, let_go, take_stock
 
     !> Where the work of the drive has gone [F L].
     type :: energy_balance
@@ -112,6 +112,32 @@ contains
             energy = energy + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / system%stiffness
         end do
     end function let_go
+
+    !> What contact springs give up at once where friction falls: of it the states of friction count
+    !> too little, however short the step, since they take its slip under the traction at its end.
+    !> What a block gains or loses by its way in the step is no part of it: an error of the step.
+    pure function jumped(system, old, new) result(energy)
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old, new   !! start and end of a step
+        real(dp) :: energy   !! [F L]
+        real(dp) :: alpha    !! [F/L^3]
+        real(dp) :: back     !! way that the contact spring goes back [L]
+        real(dp) :: slip     !! in the step [L]
+        real(dp) :: counted  !! dissipated beyond slip under the last traction [F/L]
+        integer :: i
+
+        energy = 0.0_dp
+        alpha = system%props(prop_alpha_t)
+        do i = 1, size(new%x)
+            slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
+            back = abs(old%statev(i, statev_u_et)) - abs(new%statev(i, statev_u_et))
+            if (.not. (slip > 0.0_dp .and. back > 0.0_dp)) cycle
+            if (allocated(system%constants)) alpha = system%constants(i, prop_alpha_t)
+            counted = new%statev(i, statev_dissipation) - old%statev(i, statev_dissipation) &
+                - alpha * abs(new%statev(i, statev_u_et)) * slip
+            energy = energy + system%area * max(0.0_dp, 0.5_dp * alpha * back**2 - counted)
+        end do
+    end function jumped
 
     !> Held by the springs, the contact and the motion together.
     pure function held(self) result(total)

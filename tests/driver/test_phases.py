@@ -84,6 +84,29 @@ class Phases(Program):
             _, energies = self.table(text)
             self.assertLess(abs(energies['unbalanced']), part * energies['dissipated'])
 
+    def test_what_a_jump_of_the_contact_gives_up_is_dissipated_by_all_steps(self):
+        # friction falls by 66 a length where the contact spring unloads by 7.8: (drop)^2/(2 alpha) at once
+        slider = """&friction law='slip_weakening_healing', alpha_n=33.9, alpha_t=7.8, mu_s=0.354, mu_k=0.257, d_c=0.00456, xi=0.186 /
+            &slider mass=0.0153, stiffness=15.28, damping=0.67, area=2.218, normal_traction=3.073 ACROSS /
+            &drive velocity=0.0118 / """
+        across = ', normal_mass=2e-3, normal_stiffness=33.4'
+        dissipated = []
+        for more, time in (('', 't_end=30, rtol=1e-7'), ('', 't_end=30, dt=1e-3'), (across, 't_end=30, rtol=1e-6'),
+                           (across, 't_end=30, dt=1e-3')):
+            _, energies = self.table(slider.replace('ACROSS', more) + f'&time {time} /')
+            dissipated.append(energies['dissipated'])
+            self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])   # 0.08 without the jump
+        for other in dissipated[1:]:
+            self.assertAlmostEqual(other, dissipated[0], delta=1e-3 * dissipated[0])
+
+    def test_what_a_sudden_relief_of_the_contact_gives_up_is_dissipated_by_fixed_steps(self):
+        # 2.3 and 0.12 of friction before and after: the contact spring loses 2.18^2/(2 alpha) area
+        _, energies = self.table("""&friction law='coulomb', alpha_n=15, alpha_t=2.5, mu=0.86 /
+            &slider mass=1e6, stiffness=1.74, damping=0.46, area=0.77 /
+            &drive velocity=1e-3, duration=3000, 1000, normal=2.68, 0.134 /
+            &time t_end=4000, dt=0.5 /""")
+        self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])   # 0.5 without it
+
     def test_a_subloading_surface_beside_a_damper_does_not_chatter_under_a_varying_pressure(self):
         # a derivative taken across the end of slip made a step of each 1e-4 of it
         result = self.run_text("""&friction law='subloading', alpha_n=2.39e4, alpha_t=5.79e4, mu_s=0.32, mu_k=0.142, kappa=43.7,
