@@ -17,7 +17,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / 'hosts'))
 import friction_point  # noqa: E402
 
 FORTRAN = os.environ.get('FC', 'gfortran')
-EXAMPLES = pathlib.Path(__file__).resolve().parent.parent / 'examples'
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+EXAMPLES = ROOT / 'examples'
 
 
 class Installed(unittest.TestCase):
@@ -105,6 +106,13 @@ class Installed(unittest.TestCase):
                  self.build('modules_static', FORTRAN, modules,
                             '-static ' + self.pkg_config('--static', '--cflags', '--libs', 'stickslip-fortran'))]
         self.assertEqual(lines, lines[:1] * len(lines))
+
+    def test_c_sources_need_nothing_that_cmake_makes(self):
+        """fpm compiles every file below src as it lies there."""
+        sources = sorted(ROOT.glob('src/**/*.c'))
+        self.assertGreater(len(sources), 2)
+        for source in sources:
+            self.call('cc', '-c', f'-I{ROOT / "include"}', source, '-o', self.folder / 'alone.o')
 
     def test_everything_a_host_needs_is_installed(self):
         for name in ('libstickslip.a', 'libSTICKSLIP.so', 'libstickslip_kratos.so', 'libstickslip_mgis.so', 'friction.h',

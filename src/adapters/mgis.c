@@ -290,5 +290,7 @@ typedef const char *const text;
     LAYER(layer, law, own, __VA_ARGS__)
 #define BEHAVIOURS(B, ending, law, own, ...) PAIR(B##ending, B##Layer##ending, law, own, __VA_ARGS__)
 
-/* Made from the library's tables by cmake/mgis_behaviours.f90. */
+/* Made from the library's tables by cmake/mgis_behaviours.f90; fpm, which builds the library alone, has none. */
+#if __has_include("mgis_behaviours.h")
 #include "mgis_behaviours.h"
+#endif
