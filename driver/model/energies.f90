@@ -113,9 +113,10 @@ contains
         end do
     end function let_go
 
-    !> What contact springs give up at once where friction falls: of it the states of friction count
-    !> too little, however short the step, since they take its slip under the traction at its end.
-    !> What a block gains or loses by its way in the step is no part of it: an error of the step.
+    !> What contact springs give up at once where friction falls, and with them the drive spring of
+    !> a block without mass and damping: of it the states of friction count too little, however
+    !> short the step, since they take its slip under the traction at its end. What a block gains or
+    !> loses by its way in the step is no part of it: an error of the step.
     pure function jumped(system, old, new) result(energy)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: old, new   !! start and end of a step
@@ -123,7 +124,8 @@ contains
         real(dp) :: alpha    !! [F/L^3]
         real(dp) :: back     !! way that the contact spring goes back [L]
         real(dp) :: slip     !! in the step [L]
-        real(dp) :: counted  !! dissipated beyond slip under the last traction [F/L]
+        real(dp) :: counted  !! dissipated beyond slip under the last traction [F L]
+        real(dp) :: given    !! [F L]
         integer :: i
 
         energy = 0.0_dp
@@ -133,9 +135,12 @@ contains
             back = abs(old%statev(i, statev_u_et)) - abs(new%statev(i, statev_u_et))
             if (.not. (slip > 0.0_dp .and. back > 0.0_dp)) cycle
             if (allocated(system%constants)) alpha = system%constants(i, prop_alpha_t)
-            counted = new%statev(i, statev_dissipation) - old%statev(i, statev_dissipation) &
-                - alpha * abs(new%statev(i, statev_u_et)) * slip
-            energy = energy + system%area * max(0.0_dp, 0.5_dp * alpha * back**2 - counted)
+            given = 0.5_dp * system%area * alpha * back**2
+            if (.not. (system%mass > 0.0_dp .or. system%damping > 0.0_dp)) given = given &
+                + 0.5_dp * (system%area * alpha * back)**2 / system%stiffness
+            counted = system%area * (new%statev(i, statev_dissipation) - old%statev(i, &
+                statev_dissipation)) - abs(new%friction(i)) * slip
+            energy = energy + max(0.0_dp, given - counted)
         end do
     end function jumped
 
