@@ -246,7 +246,7 @@ def draw_directions(library, axis):
         axis.plot(numpy.degrees(fine), numpy.degrees(numpy.arctan2(expected[1], expected[0])), 'k-')
         axis.plot(numpy.degrees(angles), [numpy.degrees(numpy.arctan2(second, first)) for first, second in tractions], 'o',
                   color=f'C{int(direction) + 1}', label=name)
-    axis.set(xlabel='direction of sliding', ylabel='direction of the traction', title='mu_2 = mu_1/2, degrees to axis 1')
+    axis.set(xlabel='sliding, angle to axis 1 [degrees]', ylabel='traction, angle to axis 1 [degrees]', title='Coulomb, mu_2 = mu_1/2')
 
 
 def draw(library, report):
@@ -259,17 +259,17 @@ def draw(library, report):
     fine = numpy.logspace(-2, 1.5, 200)
     axes[0].semilogx(fine, 0.2 + 0.2 * numpy.exp(-0.5 * fine), 'k-', label='closed form')
     axes[0].semilogx(rates, computed, 'o', color='C1', label='library')
-    axes[0].set(xlabel='slip rate', ylabel='friction coefficient', title='static-kinetic decay')
+    axes[0].set(xlabel='slip rate [L/T]', ylabel='friction coefficient [-]', title='static-kinetic decay')
     for evolution, name in enumerate(('ageing', 'slip')):
         x, expected, computed = transient(library, evolution)
         axes[1].plot(x, expected, 'k-')
         axes[1].plot(x[::15], computed[::15], 'o', color=f'C{evolution + 1}', label=f'{name} law')
-    axes[1].set(xlabel='slip since the step / d_c', title='rate-and-state, tenfold velocity step')
+    axes[1].set(xlabel='slip since the step over d_c [-]', ylabel='friction coefficient [-]', title='rate-and-state, tenfold velocity step')
     slip, ratio = loading(library, EXACT_RATE, 300)
     grid = numpy.linspace(1e-3, 0.999, 400)
     axes[2].plot(-li(grid) / 200.0, grid, 'k-', label='li(R) = -m s')
     axes[2].plot(slip[::6], ratio[::6], 'o', color='C1', label='library')
-    axes[2].set(xlabel='slip', ylabel='R', xlim=(0, 0.02), title='subloading, first loading')
+    axes[2].set(xlabel='slip [L]', ylabel='R [-]', xlim=(0, 0.02), title='subloading, first loading')
     draw_directions(library, axes[3])
     for axis in axes:
         axis.legend()

@@ -78,7 +78,7 @@ differential equations by scipy's Radau at a tolerance of 1e-10.""")
         axes[evolution].plot(rows['time'], expected / (NORMAL + CHANGE * numpy.sin(2 * numpy.pi * rows['time'] / PERIOD)), 'k-',
                              linewidth=3, alpha=0.4, label='Radau, 1e-10')
         axes[evolution].plot(rows['time'], rows['mu'], 'C1-', linewidth=1, label='stickslip')
-        axes[evolution].set(xlabel='time [s]', ylabel='friction coefficient', title=f'{name} law', xlim=(20, T_END))
+        axes[evolution].set(xlabel='time [s]', ylabel='friction coefficient', title=f'{name} law', xlim=(20, T_END), ylim=(0.5, 0.7))
         axes[evolution].grid(alpha=0.3)
         axes[evolution].legend()
     report.picture(figure, 'linker_dieterich', 'Friction under an oscillating pressure')

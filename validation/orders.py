@@ -70,12 +70,12 @@ slip event at {expected[0]:.9f}, peak force {expected[1]:.9f}. The order is the 
     for scheme, order, least in (('backward_euler', 1.0, 0.1), ('exact_rate', 2.0, 0.1)):
         name = scheme.replace('_', ' ')
         found = errors(program, scheme, steps, expected)
-        for axis, values, what in zip(axes, found, ('event time', 'peak force')):
+        for axis, values, what, unit in zip(axes, found, ('event time', 'peak force'), 'TF'):
             slope = numpy.polyfit(numpy.log(steps), numpy.log(values), 1)[0]
             report.row(f'{name}: order in the {what}; error {values[-1]:.0e} at dt = {steps[-1]:g}', 'DOP853', order, slope, least,
                        absolute=True)
             axis.loglog(steps, values, 'o-', label=f'{name}, order {slope:.2f}')
-            axis.set(xlabel='step', ylabel=f'error of the {what}')
+            axis.set(xlabel='step [T]', ylabel=f'error of the {what} [{unit}]')
             axis.set_xticks(steps, [f'{dt:g}' for dt in steps])
             axis.set_xticks([], minor=True)
             axis.grid(alpha=0.3, which='both')

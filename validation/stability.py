@@ -74,9 +74,9 @@ the interval of 10 % to either side.""")
     for axis, part in zip(axes, (0.98, 1.02)):
         rows, steady, _ = rate_and_state_run(program, 'ageing', 0.025, 1.0, part * critical_stiffness(0.025, 1.0))
         axis.plot(rows['time'], 1e6 * (rows['friction_force'] - steady), 'C1-')
-        axis.set(xlabel='time', title=f'k = {part:g} k_c (ageing law, M = 0.025, v = 1)')
+        axis.set(xlabel='time [T]', title=f'k = {part:g} k_c (ageing law, M = 0.025, v = 1)')
         axis.grid(alpha=0.3)
-    axes[0].set(ylabel='friction less its steady value, 1e-6')
+    axes[0].set(ylabel='friction less its steady value [1e-6]')
     report.picture(figure, 'stability', 'A small disturbance on either side of the critical stiffness')
 
 
