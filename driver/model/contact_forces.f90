@@ -3,7 +3,7 @@ module contact_forces
     use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_ok, friction_update, friction_update_batch, prop_alpha_n, &
-        statev_size, statev_u_n
+        prop_alpha_t, statev_dissipation, statev_size, statev_status, statev_u_et, statev_u_n
     use slider_system, only : set_accelerations, slider, slider_state
     implicit none
     private
@@ -122,13 +122,16 @@ contains
 
     !> A sudden change of the normal traction, at one moment of time. A loaded contact whose
     !> friction depends on the slip rate needs time for it: there the next step has to press it.
+    !> The blocks stand still meanwhile, so that slip dissipates what the contact springs hold less
+    !> afterwards.
     subroutine apply_normal_traction(system, normal, state, taken)
         type(slider), intent(in) :: system
         real(dp), intent(in) :: normal   !! afterwards [F/L^2]
         type(slider_state), intent(inout) :: state
         logical, intent(out) :: taken    !! or else left to the next step
-        real(dp), allocatable :: old(:, :), zero(:), tangent(:)
-        integer :: status
+        integer, parameter :: opened = 3
+        real(dp), allocatable :: old(:, :), zero(:), tangent(:), props(:)
+        integer :: status, i
 
         taken = .true.
         state%load = normal
@@ -143,6 +146,15 @@ contains
         call friction_forces(system, old, normal, zero, 0.0_dp, state%statev, state%friction, &
             tangent, status)
         taken = status >= 0
+        if (taken) then
+            do i = 1, size(zero)
+                if (nint(state%statev(i, statev_status)) == opened) cycle
+                props = system%props_of(i)
+                state%statev(i, statev_dissipation) = old(i, statev_dissipation) + 0.5_dp &
+                    * props(prop_alpha_t) * max(0.0_dp, old(i, statev_u_et)**2 &
+                    - state%statev(i, statev_u_et)**2)
+            end do
+        end if
         state%normal = normal
         call set_accelerations(system, state)
     end subroutine apply_normal_traction

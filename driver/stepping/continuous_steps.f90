@@ -40,6 +40,8 @@ module continuous_steps
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
         real(dp) :: open_below = 0.0_dp         !! normal traction that counts as none [F/L^2]
+        real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
+        logical :: reloaded = .false.           !! it is not always the same
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
@@ -53,24 +55,27 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start
-        real(dp) :: largest   !! normal traction [F/L^2]
 
         call self%take_run(run, system, start)
         self%in_rates = .true.
         if (run%drive%amplitude > 0.0_dp) self%dt_max = min(run%dt_max, 1.0_dp &
             / (16.0_dp * run%drive%frequency))
         self%rtol = run%rtol
-        largest = run%drive%largest_normal()
+        self%largest = run%drive%largest_normal()
+        associate (normal => run%drive%normal)
+            self%reloaded = minval(normal) < maxval(normal) .or. run%drive%amplitude > 0.0_dp &
+                .or. any(abs(run%drive%normal_rate) > 0.0_dp)
+        end associate
         associate (eq => self%block%equations)
             self%block%props = run%props
-            call set_up(run, run%props, largest, eq, self%natural)
+            call set_up(run, run%props, self%largest, eq, self%natural)
             eq%drive = run%drive
             self%implicit = eq%surface%traits%stiff
-            self%open_below = largest * vanishing(self)
+            self%open_below = self%largest * vanishing(self)
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, self%open_below)
-                self%open_below = -tiny(largest)
+                self%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
             call self%block%synchronise(start)
@@ -267,18 +272,17 @@ contains
         real(dp) :: v_drive, pressure, pressure_rate
 
         call set_growing_weights(self%rtol, self%natural, self%block%y, self%weights)
-        if (self%block%equations%steady) return
+        if (.not. self%reloaded) return
         call self%block%equations%inputs(t, v_drive, pressure, pressure_rate)
         pressure = max(pressure, self%open_below, self%block%equations%least_pressure)
         if (self%block%equations%surface%traits%stiff) then
             ! what counts for slip that goes with an exponential is traction over pressure
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
-                * pressure / self%drive%largest_normal()))
+                * pressure / self%largest))
         else if (self%block%equations%surface%traits%memory == 1) then
             ! R is traction over strength, and how it grows from a touchdown on is not forgotten
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * self%rtol * min(1.0_dp, &
-                max(pressure, self%block%equations%surface%law%cohesion) &
-                / self%drive%largest_normal()))
+                max(pressure, self%block%equations%surface%law%cohesion) / self%largest))
         end if
     end subroutine set_weights
 

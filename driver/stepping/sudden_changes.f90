@@ -198,7 +198,7 @@ contains
             block%y = ahead
             time_left = time_left - passes
             if (time_left <= 0.0_dp) exit
-            part = 1.2_dp * part
+            part = min(1.2_dp * part, 0.5_dp * abs(block%y(elastic)))   ! not to the other side
         end do
         block%known = .false.
     end subroutine creep_at_once
@@ -209,7 +209,7 @@ contains
         real(dp), intent(in) :: t          !! [T]
         real(dp), intent(in) :: distance   !! of the slip [L]
         real(dp), intent(out) :: ahead(unknowns)
-        real(dp), intent(out) :: passes    !! [T]
+        real(dp), intent(out) :: passes    !! [T]; without end if the surface does not slip
         logical, intent(out) :: failed     !! the slip rate falls too far in it
         real(dp), parameter :: nodes(4) = [0.0_dp, 0.5_dp, 0.5_dp, 1.0_dp]
         real(dp), parameter :: weights(4) = [1.0_dp, 2.0_dp, 2.0_dp, 1.0_dp] / 6.0_dp
@@ -222,8 +222,9 @@ contains
         do i = 1, size(nodes)
             call block%equations%rates(t, block%y + nodes(i) * distance * dy, dy, failed)
             if (i == 1) first_rate = dy(slip)
+            if (.not. (failed .or. first_rate > 0.0_dp)) passes = huge(passes)
             failed = failed .or. 2.0_dp * dy(slip) < first_rate
-            if (failed) return
+            if (failed .or. passes >= huge(passes)) return
             passes = passes + weights(i) * distance / dy(slip)
             dy = dy / dy(slip)
             ahead = ahead + weights(i) * distance * dy

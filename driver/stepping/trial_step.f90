@@ -71,7 +71,7 @@ contains
         type(trial), intent(in) :: tried
         logical :: wild
         real(dp), parameter :: far = 1.5_dp, round_off = 16.0_dp * epsilon(1.0_dp)
-        real(dp) :: tractions(2), way, work, least
+        real(dp) :: tractions(2), way, work, lost, least
 
         associate (eq => block%equations, before => block%y, after => tried%y)
             way = after(slip) - before(slip)
@@ -79,10 +79,12 @@ contains
             tractions = eq%alpha * abs([before(elastic), after(elastic)])
             wild = .false.
             if (eq%damper > 0.0_dp .or. .not. maxval(tractions) > 0.0_dp) return
+            lost = round_off * after(dissipated)
+            wild = abs(work) - lost > far * maxval(tractions) * max(way, 1.0_dp / weight, &
+                round_off * after(slip))
             if (way * weight <= 1.0_dp .or. way <= round_off * after(slip)) return
             least = minval(tractions) * (way - round_off * after(slip))
-            wild = work - round_off * after(dissipated) > far * maxval(tractions) * way .or. &
-                far * (work + round_off * after(dissipated)) < least
+            wild = wild .or. far * (work + lost) < least
         end associate
     end function wild
 

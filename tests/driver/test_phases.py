@@ -146,6 +146,24 @@ class Phases(Program):
             &drive velocity=0.17044497645153864 /
             &time t_end=3.15, rtol=5.3e-7 /""")
 
+    def test_a_load_that_vanishes_beside_cohesion_lets_the_contact_slip_at_once_and_closes_the_energies(self):
+        # only cohesion is left to slide on, so that all laws dissipate the same; what the contact spring lets go counts. Laws of
+        # the slip rate went through an infinite slip rate before, and were tolerated errors of a traction under the load before
+        state = 'a=0.01, b=0.015, d_c=1e-3, v0=1e-3, f0=0.6'
+        expected = None
+        for law, rtol, part in (("'coulomb', mu=0.7", 1e-6, 1e-4), ("'subloading', mu_s=0.7, mu_k=0.6, kappa=10, xi=0.1, m=1e9", 1e-6, 1e-4),
+                                (f"'rate_and_state', {state}", 1e-4, 5e-3), (f"'rate_and_state', evolution='slip', {state}", 1e-4, 5e-3),
+                                (f"'rate_and_state', {state}", 1e-6, 1e-3), (f"'linker_dieterich', alpha=0.3, {state}", 1e-4, 1e-2),
+                                (f"'flash_heating', f_w=0.2, v_w=1, {state}", 1e-6, 1e-3)):
+            _, energies = self.table(f"""&friction law={law}, alpha_n=1e5, alpha_t=1e5, cohesion=1 /
+                &slider mass=0.1, damping=0.1, stiffness=1e4 /
+                &drive velocity=1e-3, duration=2, 1, normal=300, 0 /
+                &time t_end=3, rtol={rtol} /""")
+            expected = expected or energies['dissipated']
+            with self.subTest(law=law, rtol=rtol):
+                self.assertAlmostEqual(energies['dissipated'], expected, delta=part * expected)
+                self.assertLess(abs(energies['unbalanced']), 1e-3 * expected)
+
     def test_a_rigid_contact_that_touches_down_does_not_stop_its_block(self):
         # v0 through the open second, then M v' = -mu N: stops after v0 M/(mu N), v0^2 M/(2 mu N)
         for law in ("'coulomb', mu=0.2", "'slip_weakening', mu_s=0.4, mu_k=0.2, d_c=1e-9",
