@@ -112,7 +112,8 @@ contains
         logical :: taken
 
         associate (eq => block%equations)
-            call press(block, state%normal, pressure, time_lost)
+            call press(block, max(state%normal, eq%least_pressure), max(pressure, &
+                eq%least_pressure), time_lost)
             if (eq%follows_share()) call slide_on(block, state%normal)
             call apply_normal_traction(system, pressure, state, taken)
             block%known = .false.
