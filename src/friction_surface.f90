@@ -1,14 +1,10 @@
 !> A friction law with its options, read once and asked often: for programs that integrate the rates
 !> of a contact themselves (docs/theory.md, section 10).
 module friction_surface
-    use friction_cohesion, only : cohesive_law, cohesive_resistance, cohesive_slip_rate, &
-        cohesive_state_rates
+    use friction_cohesion, only : cohesive_resistance, cohesive_slip_rate, cohesive_state_rates
     use friction_kinds, only : wp
     use friction_law, only : law, law_state, law_traits, load_rates, onset_drops, onset_gradual, &
         onset_yields
-    use friction_law_choice, only : choose_law, first_own_prop, law_storage, surface_options
-    use friction_shear_cap, only : capped_law
-    use friction_status, only : friction_bad_size
     implicit none
     private
 
@@ -26,38 +22,19 @@ module friction_surface
         procedure :: slip_rate, state_rates, resistance_at
     end type sliding_surface
 
+    interface
+        !> The law of a surface. Not pure: a polymorphic component may not come out of a pure
+        !> procedure.
+        module subroutine read_surface(props, surface, status)
+            implicit none
+            real(wp), intent(in) :: props(:)                !! material constants, as in
+                                                            !! `friction_update`, valid
+            type(sliding_surface), intent(out) :: surface   !! if the status is ok
+            integer, intent(out) :: status   !! ok, bad size, bad law, or bad property
+        end subroutine read_surface
+    end interface
+
 contains
-
-    !> The only procedure here that allocates. Not pure: a polymorphic component may not come out of
-    !> a pure procedure.
-    subroutine read_surface(props, surface, status)
-        real(wp), intent(in) :: props(:)                !! material constants, as in
-                                                        !! `friction_update`, valid
-        type(sliding_surface), intent(out) :: surface   !! if the status is ok
-        integer, intent(out) :: status   !! ok, bad size, bad law, or bad property
-        type(law_storage), target :: storage
-        class(law), pointer :: chosen, uncapped
-        type(surface_options) :: options
-
-        status = friction_bad_size
-        if (size(props) < first_own_prop) return
-        call choose_law(size(props), props, storage, chosen, options, status)
-        if (status < 0) return
-        uncapped => chosen
-        select type (chosen)
-        type is (capped_law)
-            surface%tau_max = chosen%tau_max
-            uncapped => chosen%inner
-        end select
-        select type (uncapped)
-        type is (cohesive_law)
-            surface%cohesion = uncapped%cohesion
-            allocate (surface%law, source=uncapped%inner)
-        class default
-            allocate (surface%law, source=uncapped)
-        end select
-        surface%traits = surface%law%traits()
-    end subroutine read_surface
 
     !> The law's `slip_rate` with its cohesion, but for the cap.
     pure subroutine slip_rate(self, state, load, rate, jumps)

@@ -238,7 +238,7 @@ class Base:
         # What is loaded first takes the place of the same in the library.
         for name, old, new in (('CMakeLists.txt', 'include(CheckLanguage)', f'link_libraries({library} gfortran)\ninclude(CheckLanguage)'),
                                ('CMakeLists.txt', ';-fno-semantic-interposition', ''), ('src/CMakeLists.txt', ' -fno-semantic-interposition', ''),
-                               ('src/CMakeLists.txt', '-O3', '-O1'), ('src/CMakeLists.txt', 'set(library_sources', 'set(library_sources\n    mutant_switch_kernel.f90')):
+                               ('src/CMakeLists.txt', '-O3', '-O1'), ('src/CMakeLists.txt', '  check_ipo_supported(', '  set(one_object OFF)  #'), ('src/CMakeLists.txt', 'set(library_sources', 'set(library_sources\n    mutant_switch_kernel.f90')):
             if old.encode() not in files[pathlib.Path(name)]:
                 sys.exit(f'{name}: no {old}')
             files[pathlib.Path(name)] = files[pathlib.Path(name)].replace(old.encode(), new.encode())

@@ -20,8 +20,8 @@ OVERSIZE = """    pure function oversize(x) result(bits)
 
 
 def renamed(text: str, prefix: str) -> str:
-    text = re.sub(r'\b((?:sub)?module|use|submodule\(friction_mod\)) friction_', rf'\1 {prefix}_friction_', text)
-    return text.replace('submodule(friction_mod)', f'submodule({prefix}_friction_mod)')
+    text = re.sub(r'\b((?:sub)?module|use|submodule\(\w+\)) friction_', rf'\1 {prefix}_friction_', text)
+    return text.replace('submodule(friction_', f'submodule({prefix}_friction_')
 
 
 def with_a_counter(text: str) -> str:
