@@ -1,8 +1,8 @@
 !> One contact point through one increment: validates, chooses the law, updates, and writes the
 !> state back (public names and arguments: module friction_mod).
 !>
-!> What every update passes through is in this file, so that a compiler can inline it in a build file
-!> by file, too.
+!> What every update passes through is in this file, so that a compiler that works file by file can
+!> inline it, too.
 submodule(friction_mod) friction_advance
     use friction_axes, only : contact_axes, is_unit_vector, turn_axes
     use friction_contact, only : contact_constants, contact_motion, contact_point, contact_update, &

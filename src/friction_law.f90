@@ -103,6 +103,7 @@ module friction_law
         procedure :: resistance_by_memory => remembers_nothing
         procedure :: traits => simple_traits
         procedure :: slopes => slopes_of_convex
+        procedure :: steepest_fall => no_bound
         procedure :: scale_of_terms => scale_of_itself
         procedure :: settle => settled_already
         procedure :: needs_time => needs_no_time
@@ -255,6 +256,19 @@ contains
         least = first%d_slip
         most = last%d_slip
     end subroutine slopes_of_convex
+
+    !> The most that the resistance, without the cap, falls per slip anywhere in an increment. A
+    !> spring that unloads faster has one equilibrium with it at most. A law that can tell without
+    !> more ado overrides this.
+    pure function no_bound(self, pressure, dt, old) result(fall)
+        class(law), intent(in) :: self
+        real(wp), intent(in) :: pressure     !! contact pressure, > 0 [F/L^2]
+        real(wp), intent(in) :: dt           !! increment of time, >= 0 [T]
+        type(law_state), intent(in) :: old   !! state at the start of the increment
+        real(wp) :: fall                     !! >= 0 [F/L^3]
+
+        fall = unbounded
+    end function no_bound
 
     !> Magnitude of the terms that the resistance is computed from: units of round-off of this are
     !> its error. A law with terms that cancel overrides it.

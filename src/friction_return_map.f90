@@ -76,34 +76,26 @@ contains
         type(sliding), intent(out) :: answer   !! the equilibrium
         integer, intent(out) :: status         !! ok, snap back, or no convergence
         type(unloading) :: spring
-        real(wp) :: x
+        type(load) :: this
+        type(place) :: here
         logical :: capped, solved
 
+        spring = unloading(trial, stiffness, trial / stiffness)
+        this = load(pressure, dt, old)
         status = friction_ok
         capped = trial > surface%tau_max
-        if (capped) capped = cap_holds(surface, unloading(trial, stiffness, trial / stiffness), &
-            load(pressure, dt, old))
+        if (capped) then
+            call find_start(surface, spring, this, here)
+            capped = here%g <= 0.0_wp
+        end if
         if (.not. capped) then
             call surface%solve(trial, stiffness, pressure, dt, old, answer, solved)
             if (solved) return
+            call find_start(surface, spring, this, here)
         end if
-        spring = unloading(trial, stiffness, trial / stiffness)
-        call return_along(surface, spring, pressure, dt, old, answer, x, status)
+        call return_from(surface, spring, this, here, status)
+        answer = here%law
     end subroutine return_map
-
-    !> Does the law itself resist at least as much as its cap, where the spring, whose trial is
-    !> above that, is down at it?
-    pure function cap_holds(surface, spring, this) result(holds)
-        class(law), intent(in) :: surface
-        type(unloading), intent(in) :: spring
-        type(load), intent(in) :: this
-        logical :: holds
-        type(place) :: there
-
-        there%x = (spring%trial - surface%tau_max) / spring%stiffness
-        call slide_to(surface, spring, this, there)
-        holds = there%law%resistance >= surface%tau_max   ! sharper than by what the spring has left
-    end function cap_holds
 
     !> The same along any unloading curve, by the search alone.
     pure subroutine return_along(surface, spring, pressure, dt, old, answer, x, status)
@@ -117,17 +109,44 @@ contains
         integer, intent(out) :: status         !! ok, snap back, or no convergence
         type(load) :: this
         type(place) :: here
-        type(stretch) :: part
 
         this = load(pressure, dt, old)
-        status = friction_ok
+        call find_start(surface, spring, this, here)
+        call return_from(surface, spring, this, here, status)
+        answer = here%law
+        x = here%x
+    end subroutine return_along
+
+    !> Where the search starts: at the trial, or where the spring is down at the cap. There g tells
+    !> whether the law itself resists less than its cap.
+    pure subroutine find_start(surface, spring, this, here)
+        class(law), intent(in) :: surface
+        class(unloading), intent(in) :: spring
+        type(load), intent(in) :: this
+        type(place), intent(out) :: here
+
         here%x = 0.0_wp
         if (spring%trial > surface%tau_max) call unload_to(surface%tau_max, spring, here%x)
         call slide_to(surface, spring, this, here)
         if (here%x > 0.0_wp) here%g = surface%tau_max - here%law%resistance
+    end subroutine find_start
+
+    !> The first equilibrium from the start of the search on, and whether another one follows.
+    pure subroutine return_from(surface, spring, this, here, status)
+        class(law), intent(in) :: surface
+        class(unloading), intent(in) :: spring
+        type(load), intent(in) :: this
+        type(place), intent(inout) :: here     !! in: the start, out: the equilibrium
+        integer, intent(out) :: status         !! ok, snap back, or no convergence
+        type(place) :: start
+        type(stretch) :: part
+        type(unloaded) :: end_
+
+        status = friction_ok
         part%last = here
         if (here%g > 0.0_wp) then
-            call next_root(surface, spring, this, here, part, status)
+            start = here
+            call next_root(surface, spring, this, start, part, status)
             if (status == friction_ok) call pin_down(surface, spring, this, part, here, status)
             if (status < 0) return
         else if (here%x > 0.0_wp) then   ! the cap holds
@@ -135,14 +154,14 @@ contains
             here%law%d_slip = 0.0_wp
             here%law%d_pressure = 0.0_wp
         end if   ! else the trial is above the strength by round-off alone
-        answer = here%law
-        x = here%x
 
         if (part%last%x >= spring%x_end) return
-        here = part%last
-        call next_root(surface, spring, this, here, part, status)
+        call spring%at(spring%x_end, end_)
+        if (surface%steepest_fall(this%pressure, this%dt, this%old) < end_%stiffness) return
+        start = part%last
+        call next_root(surface, spring, this, start, part, status)
         if (part%holds_root .or. status < 0) status = friction_snap_back
-    end subroutine return_along
+    end subroutine return_from
 
     pure subroutine on_a_line(self, x, there)
         class(unloading), intent(in) :: self

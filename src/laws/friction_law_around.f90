@@ -19,6 +19,7 @@ module friction_law_around
         procedure :: scale_of_terms
         procedure :: settle
         procedure :: slopes
+        procedure :: steepest_fall
         procedure :: needs_time
         procedure :: solve
         procedure :: pressed
@@ -95,6 +96,15 @@ contains
 
         call self%inner%slopes(first, last, pressure, dt, old, least, most)
     end subroutine slopes
+
+    pure function steepest_fall(self, pressure, dt, old) result(fall)
+        class(law_around), intent(in) :: self
+        real(wp), intent(in) :: pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: fall
+
+        fall = self%inner%steepest_fall(pressure, dt, old)
+    end function steepest_fall
 
     pure function needs_time(self) result(needs)
         class(law_around), intent(in) :: self

@@ -57,6 +57,7 @@ module friction_subloading_law
         procedure :: traits
         procedure :: u_of
         procedure :: slopes
+        procedure :: steepest_fall
         procedure :: fall_of_mu
         procedure :: solve
     end type subloading_law
@@ -236,6 +237,16 @@ contains
         most = unbounded
         if (first%state%r > steep) most = first%d_slip + first%state%r * (fall_first - fall_last)
     end subroutine slopes
+
+    !> R only rises, and mu falls fastest at first.
+    pure function steepest_fall(self, pressure, dt, old) result(fall)
+        class(subloading_law), intent(in) :: self
+        real(wp), intent(in) :: pressure, dt
+        type(law_state), intent(in) :: old
+        real(wp) :: fall
+
+        fall = pressure * self%fall_of_mu(0.0_wp, dt, old)
+    end function steepest_fall
 
     !> -d(mu)/ds, which is never negative and shrinks with the slip.
     pure function fall_of_mu(self, slip, dt, old) result(fall)
