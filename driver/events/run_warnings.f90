@@ -2,7 +2,7 @@
 !> model means (docs/driver.md, warnings).
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_facts, law_facts, prop_alpha_t
+    use friction_mod, only : friction_facts, law_facts, onset_drops, prop_alpha_t
     use run_outcome, only : outcome
     use run_settings, only : settings
     implicit none
@@ -37,6 +37,7 @@ contains
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: allowed = 0.02_dp   !! part of what has passed through the system
+        type(law_facts) :: law
         character(len=240) :: text
         real(dp) :: passed
 
@@ -46,7 +47,11 @@ contains
             write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
                 100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
         end associate
-        if (run%adaptive) then
+        law = friction_facts(run%props)
+        if (run%adaptive .and. run%across%free() .and. law%traits%onset == onset_drops) then
+            ! adaptive ones come to ones in which the contact sticks and slips many times
+            text = trim(text) // ' fixed steps (dt), for friction that drops at once'
+        else if (run%adaptive) then
             text = trim(text) // ' a smaller rtol'
         else
             text = trim(text) // ' shorter steps (dt), or steps by their error (rtol)'
