@@ -8,6 +8,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -26,15 +27,15 @@ class Parents(unittest.TestCase):
         self.assertEqual(result.returncode, 0, f'{command}: {result.stdout}')
         return result.stdout
 
-    def build(self, language):
+    def build(self, language, *options):
         build = self.folder / language
         fortran = [] if 'FC' not in os.environ else [f'-DCMAKE_Fortran_COMPILER={os.environ["FC"]}']
-        self.call(os.environ['CMAKE'], '-S', PARENTS / language, '-B', build, f'-DSTICKSLIP_SOURCE={ROOT}', *fortran)
+        self.call(os.environ['CMAKE'], '-S', PARENTS / language, '-B', build, f'-DSTICKSLIP_SOURCE={ROOT}', *fortran, *options)
         self.call(os.environ['CMAKE'], '--build', build, '-j2')
         return build
 
-    def check(self, language):
-        build = self.build(language)
+    def check(self, language, *options):
+        build = self.build(language, *options)
         self.assertEqual(self.call(build / 'slide').splitlines()[-1].split()[:2], ['40', '-0.511635412'])
         cache = (build / 'CMakeCache.txt').read_text()
         self.assertRegex(cache, r'(?m)^CMAKE_BUILD_TYPE:\w+=$')
@@ -50,7 +51,11 @@ class Parents(unittest.TestCase):
         self.assertEqual(list(prefix.rglob('*')), [])
 
     def test_a_c_project_that_knows_no_fortran_links_the_static_library(self):
-        self.check('c')
+        self.check('c', '-DSTICKSLIP_BUILD_HOSTS=ON')
+        # without optimisation, too, hosts find all that the shared objects call
+        for name in ('STICKSLIP', 'stickslip_kratos', 'stickslip_mgis'):
+            library = next((self.folder / 'c').rglob(f'lib{name}.so'))
+            self.call(sys.executable, '-c', f'import ctypes, os; ctypes.CDLL({str(library)!r}, mode=os.RTLD_NOW)')
 
     def test_a_c_plus_plus_project(self):
         self.check('cpp')

@@ -1,6 +1,7 @@
 !> What several adapters need between a host and `friction_mod`. No physics.
 module friction_host
-    use friction_kinds, only : largest, wp
+    use, intrinsic :: iso_fortran_env, only : int64
+    use friction_kinds, only : wp
     use friction_mod, only : array_sizes, friction_bad_increment, friction_message, &
         friction_no_convergence, friction_ok, friction_snap_back, friction_tangential, &
         friction_zero_time_increment, prop_alpha_n, prop_alpha_t, statev_size, statev_status, &
@@ -185,13 +186,14 @@ contains
         end if
     end subroutine place_point
 
-    !> Is a number finite and not too large? Read from the exponent, so that a NaN raises no
-    !> exception in the host.
+    !> Is a number finite and below 2**333, as the routine's own have to be? Read from the bits of
+    !> its exponent, so that a NaN raises no exception in the host.
     elemental function usable(x)
         real(wp), intent(in) :: x
         logical :: usable
+        integer(int64), parameter :: exponent_bits = 2047, too_large = 1023 + 333
 
-        usable = exponent(x) <= exponent(largest)
+        usable = iand(shiftr(transfer(x, exponent_bits), 52), exponent_bits) < too_large
     end function usable
 
     !> Elastic energy per area held by the contact springs.
