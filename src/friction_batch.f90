@@ -26,8 +26,7 @@ submodule(friction_mod) friction_batch
                                        !! constants for all: it has a kernel of its own
         real(wp) :: plain_constants(8)              !! for that kernel
         real(wp) :: viscous            !! stiffness of the damper, eta_t/dt [F/L^3]
-        real(wp) :: room(columns_room)   !! constants of all points, if they share them, in columns
-        integer :: start               !! where these begin
+        real(wp), pointer, contiguous :: columns(:)   !! constants of all points, if they share them
     end type batch
 
     interface
@@ -126,7 +125,8 @@ contains
         real(wp), intent(inout) :: traction(sizes%points, sizes%ndir)
         real(wp), intent(inout), target :: tangent(sizes%points, sizes%ndir, sizes%ndir)
         integer, intent(out) :: status(sizes%points)
-        type(batch), target :: this
+        type(batch) :: this
+        real(wp), target :: room(columns_room)
         integer(int64) :: head, block, last_block
 
         if (sizes%points == 0) return
@@ -134,7 +134,7 @@ contains
             status = friction_bad_size
             return
         end if
-        call prepare(this, sizes, dtime, rows, props)
+        call prepare(this, room, sizes, dtime, rows, props)
 
         ! Blocks begin where a cache line begins, but for the first.
         head = modulo(-transfer(c_loc(tangent), 0_c_intptr_t) / 8, int(line, c_intptr_t))
@@ -165,8 +165,9 @@ contains
     end subroutine update_arrays_batch
 
     !> Plans the lanes, by the first point whose constants are valid.
-    pure subroutine prepare(this, sizes, dtime, rows, props)
-        type(batch), intent(out), target :: this
+    pure subroutine prepare(this, room, sizes, dtime, rows, props)
+        type(batch), intent(inout) :: this   !! out; (out) would copy its first values once more
+        real(wp), intent(inout), target :: room(columns_room)   !! for what it points to
         type(array_sizes), intent(in) :: sizes
         real(wp), intent(in) :: dtime
         integer(int64), intent(in) :: rows
@@ -179,6 +180,7 @@ contains
         this%array_sizes = sizes
         this%dtime = dtime
         this%rows = rows
+        this%columns => room(line_start(room):)
         this%plain = .false.
         this%plan%kind = lane_none
         this%viscous = 0.0_wp
@@ -196,13 +198,15 @@ contains
         if (this%plan%damping > 0.0_wp .and. dtime > 0.0_wp) this%viscous = this%plan%damping &
             / dtime
         if (.not. this%viscous < most) this%plan%kind = lane_none
-        this%start = line_start(this%room)
-        if (this%plan%kind /= lane_none) call spread_constants(this%plan, this%room(this%start))
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
             .and. this%plan%options == 0 .and. max(this%plan%cohesion, this%viscous) <= 0.0_wp
-        associate (value => this%plan%source%value)
-            this%plain_constants = [value(:c_mu_0 - 1), value(c_own:c_own + 4), value(c_mu_0)]
-        end associate
+        if (this%plain) then
+            associate (value => this%plan%source%value)
+                this%plain_constants = [value(:c_mu_0 - 1), value(c_own:c_own + 4), value(c_mu_0)]
+            end associate
+        else if (this%plan%kind /= lane_none) then
+            call spread_constants(this%plan, this%columns)
+        end if
     end subroutine prepare
 
     !> Points `first` to `last`, a block at most.
@@ -232,8 +236,8 @@ contains
                 traction, tangent, status)
         else
             left = 0
-            call update_lanes(this, first, last, this%room(this%start), this%plan%options, du, &
-                props, left, statev, traction, tangent, status)
+            call update_lanes(this, first, last, this%columns, this%plan%options, du, props, &
+                left, statev, traction, tangent, status)
         end if
     end subroutine update_range
 
@@ -329,6 +333,7 @@ contains
         statev_ = 0.0_wp
         ! no column that is not in use: copies of signalling numbers stay in vector registers
         used = c_own + this%plan%source%n_own - 1
+        if (this%plain) used = 0
         constants_(:, :used) = constants(:, :used)
         du_(:count, :) = du(first:last, :)
         statev_(:count, :) = statev(first:last, :statev_size)

@@ -61,7 +61,7 @@ contains
         call choose_law(nprops, props, storage, surface, options, status)
         if (status < 0 .or. options%plane%associated) return
         call choose_own_law(nprops, props, storage, own, option, status)
-        call plan_own(own, nprops, props, plan)
+        call plan_own(own, law_descriptions(nint(props(prop_law)))%constants, nprops, props, plan)
         if (plan%kind == lane_none) return
         plan%needs_time = own%needs_time() .or. options%damping > 0.0_wp
         plan%cohesion = options%cohesion
@@ -90,12 +90,12 @@ contains
     end subroutine plan_lanes
 
     !> The part of the law itself.
-    pure subroutine plan_own(own, nprops, props, plan)
+    pure subroutine plan_own(own, table, nprops, props, plan)
         class(named_law), intent(in) :: own
+        type(constant_table), intent(in) :: table   !! of the law
         integer, intent(in) :: nprops
         real(wp), intent(in) :: props(nprops)
         type(lane_plan), intent(inout) :: plan
-        type(constant_table) :: table
         integer :: k, place, column_of(size(table%of))
 
         plan%kind = kind_of(own)
@@ -103,7 +103,6 @@ contains
         plan%source%place(c_alpha_n) = prop_alpha_n
         plan%source%place(c_alpha_t) = prop_alpha_t
         call must_stay(prop_law, props(prop_law), plan)
-        table = law_descriptions(nint(props(prop_law)))%constants
         column_of = 0
         do k = 1, table%n
             place = first_own_prop + k - 1

@@ -59,7 +59,8 @@ contains
         real(wp), intent(inout) :: traction(sizes%ndir, sizes%points)
         real(wp), intent(inout) :: tangent(sizes%ndir, sizes%ndir, sizes%points)
         integer, intent(out) :: status(sizes%points)
-        type(batch), target :: this   ! of one block
+        type(batch) :: this   ! of one block
+        real(wp), target :: constants(columns_room)
         integer(int64) :: number, last_block
 
         if (sizes%points == 0) return
@@ -67,7 +68,7 @@ contains
             status = friction_bad_size
             return
         end if
-        call prepare(this, array_sizes(int(apart, int64), sizes%ndir, sizes%nprops, &
+        call prepare(this, constants, array_sizes(int(apart, int64), sizes%ndir, sizes%nprops, &
             statev_size), dtime, 1_int64, props)
         last_block = (sizes%points + lanes - 1) / lanes
         if (.not. worth_threads(sizes%points, few)) then
