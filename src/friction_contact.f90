@@ -143,6 +143,7 @@ contains
         closed = pressure > least
         if (closed) return
         closed = touches(surface%cohesion, motion%blur, new%u_n)
+        if (closed) new%u_n = min(new%u_n, 0.0_wp)   ! or round-off would add up to a gap
         pressure = 0.0_wp
     end subroutine find_normal
 
