@@ -3,7 +3,8 @@
 !>
 !> What Fortran's own reader takes is taken with the same meaning, or refused: null values (two
 !> commas in a row), text in quotes over several lines, text after the `/` of a group, which
-!> that reader skips.
+!> that reader skips. A comma before a comment, or at the start of a line, separates two values, as
+!> the standard has it; gfortran (12) takes one between them to be missing.
 module namelist_parser
     use fault_list, only : append_fault, fault
     use number_text, only : whole_text
