@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import threading
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -54,27 +55,51 @@ REPORTS = ('faults', 'failure', 'warnings')
 
 def simulate(text: str, name: str = 'input', watch: Callable[[float], object] | None = None) -> Output:
     """Runs the slider on the text of a namelist. `watch` is told now and then which part of the run is done; what it
-    raises ends the run, and is raised here. Gives the interpreter's lock away."""
-    raised = []
+    raises ends the run, and is raised here, as is KeyboardInterrupt where there is a `watch`. Gives the interpreter's lock away."""
+    raised: list[BaseException] = []
 
     def told(part: float, _context: int | None) -> int:
         try:
             if watch is not None:
                 watch(part)
-        except BaseException as error:   # also KeyboardInterrupt: it has to pass through the library's frames
+        except BaseException as error:   # it has to pass through the library's frames
             raised.append(error)
-            return 1
-        return 0
+        return 1 if raised else 0
 
     result = ctypes.c_void_p()
-    status = _run(name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result))
+    arguments = name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result)
     try:
+        if watch is None or threading.current_thread() is not threading.main_thread():
+            status = _run(*arguments)
+        else:
+            status = _interruptible(arguments, raised)
         if raised:
             raise raised[0]
         tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in TABLES}
         return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
     finally:
         _free(result)
+
+
+def _interruptible(arguments: tuple, raised: list[BaseException]) -> int:
+    """A run in a thread of its own. The interpreter raises KeyboardInterrupt in the main thread, and if that is in a run,
+    as soon as a function is called from there, before the function could do anything about it."""
+    status: list[int] = []
+    over = threading.Event()   # join() of an interrupted thread may take it for over (Python 3.11)
+
+    def go() -> None:
+        try:
+            status.append(_run(*arguments))
+        finally:
+            over.set()
+
+    threading.Thread(target=go).start()
+    while not over.is_set():
+        try:
+            over.wait()
+        except BaseException as error:
+            raised.append(error)
+    return status[0]
 
 
 def steady_sliding(text: str, name: str = 'input') -> Output:
