@@ -5,10 +5,11 @@ docs/python.md of the project shows each of them at work.
 from . import laws
 from ._library import message, version as __version__
 from ._fit import Fit, fit
+from ._namelist import InputError
 from ._rates import Rates, SlipRates, rates, slip_rates
 from ._rate_state import RateStateFit, fit_rate_and_state
 from ._records import Record, RecordError
-from ._run import InputError, Run, RunError, run
+from ._run import Run, RunError, run
 from ._stability import Stability, stability
 from ._update import Result, update
 

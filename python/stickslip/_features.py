@@ -47,7 +47,7 @@ class Target:
     def draw_noise(self, rng: np.random.Generator, size: int) -> np.ndarray:
         """Noise like the record's."""
         if self.wander.size == 0:
-            return rng.normal(scale=self.analysis.noise, size=size)
+            return self.analysis.white_noise(rng, size)
         # In pieces of about a cycle: the whole has no mean at any phase, which would leave the mean cycle without noise.
         period = self.analysis.period / self.analysis.step
         pieces: list[np.ndarray] = []
@@ -161,7 +161,7 @@ def _wander(analysis: Analysis) -> np.ndarray:
     cycles = np.interp(np.interp(places, np.arange(len(middle)), middle), time, force)
     mean = cycles.mean(axis=0)
     left = np.sqrt(len(cycles) / (len(cycles) - 1.0))   # of a deviation from the mean, which has a part of it
-    if left * np.std(cycles - mean) < WANDERS * analysis.noise:
+    if left * np.std(cycles - mean) < WANDERS * np.std(analysis.white_noise(np.random.default_rng(0), time.size)):
         return np.empty(0)
     phase = np.interp(time, middle, np.arange(len(middle)))
     inner = (phase > 0.0) & (phase < len(middle) - 1.0) & (phase % 1.0 > BETWEEN[0]) & (phase % 1.0 < BETWEEN[-1])
@@ -182,8 +182,10 @@ def median_of_blocks(each: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 
 def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
     """Names, errors by noise and scales of the features of a record whose events repeat."""
-    wander = target.wander
-    noise = float(np.std(wander)) if wander.size else target.analysis.noise
+    lasting = target.wander
+    if target.analysis.uneven and not lasting.size:   # straight lines between samples
+        lasting = target.analysis.white_noise(np.random.default_rng(0), target.analysis.time.size)
+    noise = float(np.std(lasting)) if lasting.size else target.analysis.noise
     times = len(_time_places(events, target.analysis.from_rest))
     around = values[times:times + NEAR.size]
     amplitude = np.ptp(around)
@@ -195,7 +197,7 @@ def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str,
              ('cycle', np.full(BETWEEN.size, level), np.full(BETWEEN.size, amplitude))]
     if target.first_load > 0.0:
         samples = max(1.0, target.first_load / (LOADING_BINS * target.analysis.step))
-        of_means = np.std(average(wander, int(samples))) if wander.size else noise / np.sqrt(samples)
+        of_means = np.std(average(lasting, int(samples))) if lasting.size else noise / np.sqrt(samples)
         parts.append(('first loading', np.full(LOADING_BINS, of_means), np.full(LOADING_BINS, amplitude)))
     names = tuple(name for name, errors, _ in parts for _ in errors)
     return names, np.concatenate([errors for _, errors, _ in parts]), np.concatenate([scale for _, _, scale in parts])

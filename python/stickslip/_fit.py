@@ -8,7 +8,7 @@ import numbers
 import pathlib
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,11 +31,15 @@ from ._search import (
     set_times,
 )
 
+if TYPE_CHECKING:
+    import matplotlib.figure
+
 NORMAL = 1.959964       # standard deviations of a 95 % interval
 UNDETERMINED = 0.2      # standard deviation of a constant's logarithm from which on the records do not determine it
 REPLICAS = 100          # of the records with other noise, or with other events
 VELOCITY_FACTOR = (0.8, 1.25)   # its bounds, unless given
 RIG_KEYS = {('drive', 'velocity'), ('slider', 'stiffness')}   # what the slope of the loading tells about the rig
+RIG_GROUPS = ('friction', 'slider', 'drive', 'initial', 'chain')   # other groups say how to compute, and what to write
 RINGING_TIMES = 10.0    # least period without jumps of the response
 
 
@@ -88,7 +92,7 @@ class Fit:
             raise TypeError('predict: record: an object of stickslip.Record is needed')
         return compare(self._problem, self._candidate, analyse(record, _sense(_namelist.merge(self.model, record.settings))))
 
-    def plot(self, path: str | pathlib.Path | None = None):
+    def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
         """Draws record and model on one axis, cycles laid over one another, and what is left over; a row a record.
 
         path: where to save the picture, PNG, PDF or SVG by its ending. Gives the matplotlib figure.
@@ -132,8 +136,8 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     input: a namelist (name of the file, or its text) or a dict of groups as `run` takes them. Constants that are not
         free keep its values. Steps are adaptive, in continuous time, whatever its group ``&time`` says; an `rtol` above
         1e-6 there is taken.
-    free: names of the constants to find: keys of ``&friction``, or others as 'slider.damping', 'slider.stiffness'; and
-        'velocity_factor', by which the drive velocities of all records are multiplied, where the rig's are not sure.
+    free: names of the constants to find: keys of ``&friction``, or of ``&slider``, ``&drive``, ``&initial``, ``&chain`` as
+        'slider.damping', 'slider.stiffness'; settings of the computation are none; and 'velocity_factor', by which the drive velocities of all records are multiplied, where the rig's are not sure.
     bounds: a factor about the values of the input, or lower and upper bounds by name, where the input need not have a
         value; all above 0. Of 'velocity_factor', unless by name: 0.8 and 1.25.
     seed: of the starting points; one seed gives one answer, whatever `jobs` is.
@@ -215,6 +219,9 @@ def _constant(name: str, base: dict, bounds: float | Mapping[str, tuple[float, f
         return _bounded(name, 'drive', 'velocity', own, is_factor=True)
     group, _, key = name.lower().rpartition('.')
     group = group or 'friction'
+    if group not in RIG_GROUPS:
+        raise InputError(f'fit: {name}: free are constants of the surface and the rig, keys of '
+                         f'{", ".join("&" + group for group in RIG_GROUPS)}, and velocity_factor; &{group} has none')
     if isinstance(bounds, Mapping):
         if name not in bounds:
             raise InputError(f'fit: no bounds for {name}')
@@ -277,7 +284,13 @@ def _assess(problem: Problem, candidate: np.ndarray, stopped: str) -> Fit:
     inverse = np.linalg.pinv(slope, rcond=1e-9)
     by_noise = replicas(problem, candidate, REPLICAS)
     covariance = np.cov(inverse @ by_noise, ddof=0).reshape(2 * (candidate.size,))
-    covariance += along_valley(problem, candidate, slope, 0) + along_valley(problem, candidate, slope, 1)
+    # White noise through the slopes tells how wide a valley is but for its bends, which counts half, as the coverage of synthetic
+    # records says (docs/fitting.md); noise that lasts and events that scatter are known less well: there it counts in full.
+    white = not any(target.wander.size or target.analysis.scattered for target in problem.targets)
+    for valley, direction in (along_valley(problem, candidate, slope, which) for which in (0, 1)):
+        along, known = (direction @ part @ direction for part in (valley, covariance))
+        share = 0.5 + 0.5 * max(0.0, 1.0 - known / along) if white and along > 0.0 else 1.0
+        covariance += share * valley
     covariance += (inverse * _floors(problem.targets)**2) @ inverse.T
     freedom = misfit.size - candidate.size
     if freedom > 0:

@@ -5,14 +5,19 @@ import dataclasses
 import numbers
 import pathlib
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._arrays import row_of
 from ._optional import needed
 from ._run import series
 from ._search import checked_bounds
-from .laws import RateAndState
+from .laws import Law, RateAndState
+
+if TYPE_CHECKING:
+    import matplotlib.figure
 
 NAMES = ('a', 'b', 'd_c', 'stiffness')
 NORMAL = 1.959964
@@ -38,7 +43,7 @@ class RateStateFit:
     friction: np.ndarray                        #: of the record
     model: np.ndarray                           #: at the same times
 
-    def law(self, *, alpha_n: float, alpha_t: float, v0: float, f0: float, evolution: str = 'ageing') -> RateAndState:
+    def law(self, *, alpha_n: float, alpha_t: float, v0: float, f0: float, evolution: str = 'ageing') -> Law:
         """The law with the values found, for `update` and `run`."""
         return RateAndState(alpha_n=alpha_n, alpha_t=alpha_t, v0=v0, f0=f0, evolution=evolution,
                             **{name: self.values[name] for name in ('a', 'b', 'd_c')})
@@ -52,7 +57,7 @@ class RateStateFit:
         a_b = self.values['a'] - self.values['b']
         return '\n'.join([*lines, f'{"a - b":10s} {a_b:10.4g}', *(f'warning: {warning}' for warning in self.warnings)])
 
-    def plot(self, path: str | pathlib.Path | None = None):
+    def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
         """Draws record and model, and what is left over. path: where to save the picture. Gives the figure."""
         figure = needed('matplotlib.figure', 'fit').Figure(figsize=(8, 5), layout='constrained')
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
@@ -147,7 +152,8 @@ class _Steps:
     def default_bounds(self) -> dict[str, tuple[float, float]]:
         """For the constants that the caller has no bounds for."""
         speed = self.velocity.max()
-        shortest = speed * float(np.diff(self.time).min())   # samples may be denser around the changes
+        # Samples may be denser around the changes; at random times, single ones are as near to one another as can be.
+        shortest = speed * float(np.percentile(np.diff(self.time), 5))
         longest = speed * (self.time[-1] - self.time[0]) / 5.0
         return {'a': (1e-4, 0.1), 'b': (1e-4, 0.1), 'd_c': (shortest, longest), 'stiffness': (0.01 / longest, 1.0 / shortest)}
 
@@ -196,8 +202,8 @@ def _between(time: np.ndarray, rows: np.ndarray, force: np.ndarray, after: np.nd
 
 def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], displacement: ArrayLike | None,
              velocity: Sequence[float] | None) -> _Steps:
-    time, friction = np.asarray(time, float).ravel(), np.asarray(friction, float).ravel()
-    changes = np.asarray(changes, float).ravel()
+    time, friction = row_of(time, 'time'), row_of(friction, 'friction')
+    changes = row_of(changes, 'changes')
     if time.size != friction.size or time.size < 50:
         raise ValueError(f'{time.size} times and {friction.size} values of friction: as many of each are needed, at least 50')
     if not (np.isfinite(time).all() and np.isfinite(friction).all()):
@@ -210,13 +216,13 @@ def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], dis
         raise ValueError('either displacement or velocity is needed')
     edges = np.concatenate([[time[0]], changes, [time[-1]]])
     if displacement is not None:
-        displacement = np.asarray(displacement, float).ravel()
+        displacement = row_of(displacement, 'displacement')
         if displacement.size != time.size:
             raise ValueError(f'{displacement.size} displacements for {time.size} times: as many are needed')
         if not np.isfinite(displacement).all():
             raise ValueError('the displacement holds what is not a finite number')
         changes, velocity = _lines(time, displacement, edges)
-    velocity = np.asarray(velocity, float)
+    velocity = row_of(velocity, 'velocity')
     if velocity.size != changes.size + 1:
         raise ValueError(f'{velocity.size} velocities for {changes.size} changes: {changes.size + 1} are needed')
     sense = 1.0

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
+from ._arrays import numbers
 from ._update import STATE_SIZE
 from .laws import AtPoints, Law, require_law
 
@@ -41,8 +42,8 @@ def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
     A bad state or velocity is a negative status of that point; wrong shapes are a ValueError.
     """
     require_law(law, own=False)
-    velocity = np.ascontiguousarray(velocity, np.float64)
-    state = np.ascontiguousarray(state, np.float64)
+    velocity = np.ascontiguousarray(numbers(velocity, 'velocity'))
+    state = np.ascontiguousarray(numbers(state, 'state'))
     if velocity.ndim not in (1, 2) or velocity.shape[-1] not in (2, 3):
         raise ValueError(f'velocity has the shape {velocity.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
     if state.shape != (*velocity.shape[:-1], STATE_SIZE):
@@ -73,9 +74,9 @@ def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: 
     require_law(law, own=True)
     own = isinstance(law, AtPoints)
     damping = ctypes.c_double(damping)
-    shape = np.broadcast_shapes(*map(np.shape, (tau, pressure, theta)), (len(law),) if own else ())
-    tau, pressure, theta = (np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float64), shape))
-                            for values in (tau, pressure, theta))
+    given = numbers(tau, 'tau'), numbers(pressure, 'pressure'), numbers(theta, 'theta')
+    shape = np.broadcast_shapes(*(values.shape for values in given), (len(law),) if own else ())
+    tau, pressure, theta = (np.ascontiguousarray(np.broadcast_to(values, shape)) for values in given)
     n = tau.size
     if own and shape != (len(law),):
         raise ValueError(f'the law has constants of {len(law)} points, the other arguments the shape {shape}')

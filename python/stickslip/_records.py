@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _namelist, _program
+from ._arrays import row_of
 from ._optional import needed
 
 
@@ -86,20 +87,11 @@ class Record:
 
 
 def _numbers(values: Any, what: str) -> np.ndarray:
-    """A time or a force as an array of its own, of one dimension; what is masked is NaN."""
-    values = values.astype(float).filled(np.nan) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
-    if values.dtype.kind == 'c':
-        raise RecordError(f'{what}: numbers are needed, not complex ones')
-    if values.dtype.kind in 'mM':
-        raise RecordError(f'{what}: numbers are needed, not dates: (t - t[0]) / numpy.timedelta64(1, "s") are seconds')
-    if values.dtype.kind not in 'fiu':
-        try:
-            values = np.array([float(value) for value in values.ravel()]).reshape(values.shape)
-        except (TypeError, ValueError) as error:
-            raise RecordError(f'{what}: numbers are needed ({error})') from None
-    if max(values.shape, default=0) != values.size:
-        raise RecordError(f'{what} has the shape {values.shape}: one number a sample is needed')
-    return np.array(values, float).ravel()
+    """A time or a force as an array of its own, of one dimension."""
+    try:
+        return row_of(values, what).copy()
+    except (TypeError, ValueError) as error:
+        raise RecordError(str(error)) from None
 
 
 def _check_numbers(path: pathlib.Path, **given: float | None) -> None:
@@ -211,7 +203,8 @@ class Analysis:
     time: np.ndarray       #: from 0 [T]
     force: np.ndarray      #: without drift [F]
     averaged: int          #: samples of the record in the mean that each sample is
-    noise: float           #: standard deviation of a sample [F]
+    noise: float           #: standard deviation of a sample; of uneven ones what their means have times its root [F]
+    own_noise: float       #: of the record's own samples [F]
     window: int            #: samples of the moving mean before events are looked for
     threshold: float       #: least fall of an event [F]
     falls: Falls
@@ -228,17 +221,35 @@ class Analysis:
     @property
     def row_step(self) -> float:
         """Time between rows of a simulation that is to be sampled like the record [T]."""
-        return self.step / self.averaged / (FINER if _uneven(self.record.time) else 1)
+        return self.step / self.averaged / (FINER if self.uneven else 1)
+
+    @property
+    def uneven(self) -> bool:
+        """Are the record's samples not taken at even times?"""
+        return _uneven(self.record.time)
 
     def like(self, time: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Another force against time, sampled and averaged as the record is."""
         fine = np.arange(0.0, time[-1], self.step / self.averaged)
-        own = self.record.time - self.record.time[0]
-        if _uneven(own):   # sparse samples cut peaks off: again and again, if need be, as the record has them
-            length = own[-1] + self.step
-            own = np.concatenate([own + k * length for k in range(int(time[-1] / length) + 1)])
+        if self.uneven:   # sparse samples cut peaks off
+            own = self._own_times(time[-1])
             time, force = own, np.interp(own, time, force)
         return average(fine, self.averaged), average(np.interp(fine, time, force), self.averaged)
+
+    def white_noise(self, rng: np.random.Generator, size: int) -> np.ndarray:
+        """Noise that varies from sample to sample, as the force has it: between samples that are not even it is a straight
+        line."""
+        if not self.uneven:
+            return rng.normal(scale=self.noise, size=size)
+        fine = self.step / self.averaged * np.arange(size * self.averaged)
+        own = self._own_times(fine[-1])
+        return average(np.interp(fine, own, rng.normal(scale=self.own_noise, size=own.size)), self.averaged)
+
+    def _own_times(self, end: float) -> np.ndarray:
+        """Times of the record's own samples from 0 on, again and again up to some time."""
+        own = self.record.time - self.record.time[0]
+        length = own[-1] + self.step
+        return np.concatenate([own + k * length for k in range(int(end / length) + 1)])
 
     @property
     def period(self) -> float:
@@ -262,7 +273,7 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     given with the sign that the program has for it, or as for a drive that goes forwards."""
     if sense < 0.0 and np.median(record.force) < 0.0:
         record = dataclasses.replace(record, force=-record.force)
-    time, force, noise = _even(record)
+    time, force, noise, own_noise = _even(record)
     if np.median(force) < 0.0 and np.median(force) < -3.0 * noise:
         record.refuse('the force is negative: it acts against the drive. Turn its sign (force_factor=-1), or the '
                       "drive's velocity")
@@ -273,7 +284,7 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     warnings += _check_shape(record, falls)
     from_rest, late = _begins_at_rest(record, time, smooth(force, window), falls)
     warnings += late
-    force, falls, drift = _without_drift(record, time, force, falls, from_rest)
+    force, falls, drift = _without_drift(record, time, force, falls, from_rest, noise)
     if drift:
         warnings.append(f'{record.name}: {drift}')
     fine = min(period / SAMPLES_A_PERIOD, np.median(falls.end - falls.onset) / SAMPLES_A_FALL)
@@ -287,7 +298,7 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     drops = falls.peak - falls.trough
     # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
     scattered = max(_spread(gaps) / np.median(gaps), _spread(drops[1:]) / np.median(drops)) > 0.1
-    return Analysis(record, time, force, coarser, noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings),
+    return Analysis(record, time, force, coarser, noise, own_noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings),
                     sense)
 
 
@@ -303,8 +314,8 @@ def _uneven(time: np.ndarray) -> bool:
     return bool(np.abs(steps - step).max() > 1e-3 * step)
 
 
-def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
-    """The record from time 0 on even samples, and its noise."""
+def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """The record from time 0 on even samples, their noise, and that of its own samples."""
     steps = np.diff(record.time)
     step = float(np.median(steps))
     time = record.time - record.time[0]
@@ -313,9 +324,10 @@ def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
     # counts. Where most do not differ, the force is known in steps, or rests.
     before = steps[1:] / (steps[:-1] + steps[1:])   # weight of the neighbour before
     apart = (force[1:-1] - before * force[:-2] - (1.0 - before) * force[2:]) / np.sqrt(1.0 + before**2 + (1.0 - before)**2)
-    noise = _spread(apart)
-    if noise == 0.0 and np.count_nonzero(apart) > 3:
-        noise = _spread(apart[apart != 0.0])
+    own_noise = _spread(apart)
+    if own_noise == 0.0 and np.count_nonzero(apart) > 3:
+        own_noise = _spread(apart[apart != 0.0])
+    noise = own_noise
     if _uneven(record.time):
         even = np.arange(0.0, time[-1], step)
         # Where samples are sparse, several even ones have the noise of one, and means of them more than so many would.
@@ -324,7 +336,7 @@ def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float]:
         time, force = even, np.interp(even, time, force)
     else:
         time = step * np.arange(time.size)
-    return time, force, noise
+    return time, force, noise, own_noise
 
 
 def _events(record: Record, time: np.ndarray, force: np.ndarray, noise: float) -> tuple[int, float, Falls]:
@@ -423,16 +435,23 @@ def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: 
                    'fitted. If the drive starts then, begin the record there (start)']
 
 
-def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls,
-                   from_rest: bool) -> tuple[np.ndarray, Falls, str]:
+PEAK_NOISE = 0.5       # of the noise of a sample: what peaks vary by at least, each the largest of a few samples
+
+
+def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, from_rest: bool,
+                   noise: float) -> tuple[np.ndarray, Falls, str]:
     """Takes a steady drift of the peaks out, and says so; a drift of more than the force itself is refused. The force of a
     spring that is slack at the start is right there, that of others in the middle."""
     late = falls.part(slice(1, None))
     if len(late) < 4:
         return force, falls, ''
-    slope, _ = np.polyfit(late.onset, late.peak, 1)
-    residual = late.peak - np.polyval(np.polyfit(late.onset, late.peak, 1), late.onset)
-    error = np.std(residual) / (np.std(late.onset) * np.sqrt(len(late)))
+    # Sparse samples cut peaks and troughs off: where there are fewer in a part of the record, that is no drift.
+    levels = 0.5 * (late.peak + late.trough) if _uneven(record.time) else late.peak
+    slope, _ = np.polyfit(late.onset, levels, 1)
+    residual = levels - np.polyval(np.polyfit(late.onset, levels, 1), late.onset)
+    # A few peaks may lie on a line by chance.
+    scatter = max(np.std(residual) * np.sqrt(len(late) / (len(late) - 2.0)), PEAK_NOISE * noise)
+    error = scatter / (np.std(late.onset) * np.sqrt(len(late)))
     drift = slope * (late.onset[-1] - late.onset[0])
     drop = float(np.median(late.peak - late.trough))
     if abs(drift) < 0.03 * drop or abs(slope) < 5.0 * error or abs(drift) < 2.0 * np.std(residual):

@@ -445,12 +445,12 @@ def _least_squares(problem: Problem, start: np.ndarray, misfit: Callable[[np.nda
     return found.x, float(values @ values)
 
 
-def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, which: int) -> np.ndarray:
-    """Covariance of the constants along a flat valley of the misfit: 0 the flattest, 1 the next. It is curved: slopes at
-    the best candidate alone make the errors several times too small. Where the constant with the largest part in the
+def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, which: int) -> tuple[np.ndarray, np.ndarray]:
+    """Covariance of the constants along a flat valley of the misfit, 0 the flattest, 1 the next, and its direction. It is
+    curved: slopes at the best candidate alone make the errors several times too small. Where the constant with the largest part in the
     flattest direction is held at one value after the other, the others are found anew; likelihoods weigh the way."""
     if candidate.size < which + 2:
-        return np.zeros((candidate.size, candidate.size))
+        return np.zeros((candidate.size, candidate.size)), np.zeros(candidate.size)
     strengths, directions = np.linalg.eigh(slope.T @ slope)
     strength, direction = strengths[which], directions[:, which]
     held = int(np.argmax(np.abs(direction)))
@@ -476,7 +476,7 @@ def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, whi
     fine = np.linspace(way[0, held], way[-1, held], 400)
     weights = np.exp(-0.5 * (np.interp(fine, way[:, held], costs) - costs.min()))
     apart = np.column_stack([np.interp(fine, way[:, held], values) for values in way.T]) - candidate
-    return (weights[:, None] * apart).T @ apart / weights.sum()
+    return (weights[:, None] * apart).T @ apart / weights.sum(), direction
 
 
 WAY = 7        # steps along the valley to either side, at most

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _namelist, _program
 from ._optional import needed
-from ._run import InputError
+from ._namelist import InputError
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
+from ._arrays import numbers
 from .laws import AtPoints, Law, require_law
 
 STATE_SIZE = 8   # numbers of a state: status, u_n, u_et1, u_et2, mu, internal variable, slip, dissipated energy
@@ -64,7 +65,7 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
     shapes are a ValueError. Releases the interpreter's lock, so that threads run side by side.
     """
     if type(du) is not _ndarray or du.dtype is not _FLOAT:
-        du = np.asarray(du, _FLOAT)
+        du = numbers(du, 'du')
     if (places := _PLACES.get(du.shape)) is not None:
         # One point. Every line counts here: a call takes less than two microseconds, a third of them in the library.
         ndir, free = places
@@ -78,7 +79,7 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
         elif len(state) != STATE_SIZE:
             raise ValueError(f'state has the length {len(state)}: {STATE_SIZE} is needed')
         else:
-            here[...] = state
+            here[...] = state if type(state) is _ndarray else numbers(state, 'state')
         time.value = dt
         try:
             size, pointer = law._size, law._pointer
@@ -130,7 +131,7 @@ def _take_state(new: np.ndarray, state: ArrayLike | None) -> None:
     if state is None:
         new[...] = 0.0
     elif state is not new:
-        state = np.asarray(state, np.float64)
+        state = numbers(state, 'state')
         if state.shape != new.shape:
             raise ValueError(f'state has the shape {state.shape}: {new.shape} is needed')
         new[...] = state

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
+from ._arrays import numbers
 
 __all__ = ['AtPoints', 'Law', 'classes']
 
@@ -104,7 +105,7 @@ class AtPoints:
                 raise TypeError(f"{type(law).__name__} has no constant {name}; there are {', '.join(known)}")
             if known[name].words:
                 raise ValueError(f'{name} is a choice, which all points share')
-            given[name] = np.asarray(values, float)
+            given[name] = numbers(values, name)
             if not (finite := np.isfinite(given[name]).ravel()).all():
                 i = int(np.argmin(finite))
                 raise ValueError(f'{type(law).__name__}, point {i}: {name} = {given[name].ravel()[i]}: must be finite')

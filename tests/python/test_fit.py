@@ -172,6 +172,24 @@ class Fit(unittest.TestCase):
             self.assertLess(abs(np.log(found.values[name] / true)), 1.3 * 0.5 * np.log(high / low), str(found))
         self.assertLess(max(found.misfit['record'].values()), 2.5)
 
+    def test_errors_are_those_of_samples_at_even_and_uneven_times_and_of_noise_that_lasts(self):
+        """Of 8 records of each kind: the root mean square of errors in standard deviations is about 1."""
+        fine, clean = synthetic(noise=0.0, output={'every': 0.001})
+        close = {**SETTINGS, 'starts': 1, 'bounds': {'mu_s': (0.35, 0.45), 'mu_k': (0.17, 0.24)}}
+        for kind in ('even', 'uneven', 'lasting'):
+            off = []
+            for seed in range(8):
+                draw = np.random.default_rng(seed)
+                t = np.sort(draw.uniform(0.0, 17.0, 1700)) if kind == 'uneven' else np.arange(0.0, 17.0, 0.01)
+                white = draw.normal(size=t.size + 60)
+                noise = np.convolve(white, 0.9**np.arange(61.0) * np.sqrt(0.19), 'valid') if kind == 'lasting' else white[60:]
+                force = np.interp(t - t[0], fine, clean) + 0.01 * clean.max() * noise
+                found = stickslip.fit(stickslip.Record(t, force), INPUT, **close)
+                off += [np.log(found.values[name] / true) / np.log(np.divide(*found.intervals[name][::-1])) * 2 * 1.96
+                        for name, true in TRUE.items()]
+            self.assertLess(np.sqrt(np.mean(np.square(off))), 1.4, kind)
+            self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.7, kind)
+
     def test_noise_that_lasts_has_its_part_in_mean_cycles(self):
         """Pieces of it must not cancel out over the cycles, as the whole does."""
         white = np.random.default_rng(4).normal(size=self.time.size + 500)
@@ -308,7 +326,8 @@ class Fit(unittest.TestCase):
             stickslip.fit((self.time, self.force), INPUT, free=['mu_s'])
 
     def test_bounds_and_names_are_checked(self):
-        for free, bounds, words in ((['mu_s'], {'mu_s': (0.5, 0.4)}, '0 < lower < upper'), (['mu_s'], {}, 'no bounds for mu_s'),
+        for free, bounds, words in ((['time.rtol'], {'time.rtol': (1e-6, 1e-3)}, 'time.rtol: free are constants .*&time has none'),
+                                    (['Output.every'], 5.0, '&output has none'), (['mu_s'], {'mu_s': (0.5, 0.4)}, '0 < lower < upper'), (['mu_s'], {}, 'no bounds for mu_s'),
                                     (['mu_0'], 5.0, 'give bounds by name'), ([], 5.0, 'no free'), (['mu_s'], 0.5, 'above 1')):
             with self.assertRaisesRegex(ValueError, words):
                 stickslip.fit(self.record, INPUT, free=free, bounds=bounds)
@@ -348,6 +367,19 @@ class Records(unittest.TestCase):
         self.assertEqual(clean.warnings, ())
         np.testing.assert_allclose(np.ptp(found.falls.peak[1:]), np.ptp(clean.falls.peak[1:]), atol=0.1)
 
+    def test_peaks_that_sparse_samples_cut_off_are_no_drift(self):
+        fine, clean = synthetic(noise=0.0, output={'every': 0.001})
+        sparse = np.concatenate([np.arange(0.0, 9.0, 0.01), np.arange(9.0, 17.0, 0.05)])
+        for seed in range(20):
+            noise = 0.01 * clean.max() * np.random.default_rng(seed).normal(size=sparse.size)
+            force = np.interp(sparse, fine, clean) + noise
+            self.assertEqual(analyse(stickslip.Record(sparse, force)).warnings, ())
+            self.assertRegex(analyse(stickslip.Record(sparse, force + 0.06 * sparse)).warnings[0], 'peaks drift')
+        even = np.arange(0.0, 17.0, 0.01)   # a few peaks on a line by chance (seed 9) are none either
+        for seed in range(20):
+            noise = 0.01 * clean.max() * np.random.default_rng(seed).normal(size=even.size + 60)[60:]
+            self.assertEqual(analyse(stickslip.Record(even, np.interp(even, fine, clean) + noise)).warnings, ())
+
     def test_a_turned_force_with_an_offset_is_refused_by_its_shape(self):
         self.refused(self.time, 5.0 - self.force, 'falls slowly .* and rises fast .* wrong sign')
         walk = np.cumsum(np.random.default_rng(1).normal(size=4000))
@@ -372,8 +404,8 @@ class Records(unittest.TestCase):
         self.assertGreater(found.noise, 0.0)
 
     def test_a_drift_from_a_slack_start_leaves_the_start_where_it_was(self):
-        found = analyse(stickslip.Record(self.time, self.force + 0.02 * self.time))
-        self.assertRegex(found.warnings[0], 'drift by 0.1[78]')
+        found = analyse(stickslip.Record(self.time, self.force + 0.04 * self.time))
+        self.assertRegex(found.warnings[0], 'drift by 0.3[3-9]')
         np.testing.assert_allclose(found.falls.peak, analyse(stickslip.Record(self.time, self.force)).falls.peak, atol=0.04)
 
     def test_wrong_units_are_told_before_the_search(self):
@@ -383,7 +415,7 @@ class Records(unittest.TestCase):
 
     def test_arrays_that_are_no_numbers_are_told(self):
         t, force = self.time, self.force
-        for time, pull, words in ((['a'] * 60, ['b'] * 60, 'time: numbers are needed'), (t, [None] * t.size, 'force: numbers'),
+        for time, pull, words in ((['a'] * 60, ['b'] * 60, 'time: numbers are needed'), (t, [{}] * t.size, 'force: numbers'),
                                   (np.stack([t, t]), np.stack([force, force]), r'time has the shape \(2, 1701\)'),
                                   (t, force + 0j, 'not complex'), ([], [], '0 samples')):
             self.refused(time, pull, words)

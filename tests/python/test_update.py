@@ -124,6 +124,28 @@ class Update(unittest.TestCase):
         with self.assertRaises(TypeError):
             stickslip.update([0.0, 0.0], 'long', law)
 
+    def test_masked_numbers_are_missing_and_other_things_are_no_numbers(self):
+        law, du = LAWS['subloading'], motions(6, 3)
+        hidden = np.zeros((6, 3), bool)
+        hidden[2, 1] = hidden[4, 0] = True
+        masked, plain = np.ma.array(du, mask=hidden), stickslip.update(du, 0.1, law)
+        found = stickslip.update(masked, 0.1, law)
+        self.assertEqual(list(np.flatnonzero(found.status)), [2, 4])
+        np.testing.assert_array_equal(found.state[[0, 1, 3, 5]], plain.state[[0, 1, 3, 5]])
+        self.assertLess(stickslip.update(masked[2], 0.1, law).status, 0)
+        state = np.ma.array(plain.state, mask=False)
+        state[1, 4] = np.ma.masked
+        self.assertEqual(list(np.flatnonzero(stickslip.update(du, 0.1, law, state).status)), [1])
+        self.assertLess(stickslip.update(du[1], 0.1, law, state[1]).status, 0)
+        self.assertLess(stickslip.rates(du[1], law, state[1]).status, 0)
+        self.assertLess(stickslip.slip_rates(np.ma.array([1.0], mask=[True]), 1.0, LAWS['rate_and_state'], 1.0).status[0], 0)
+        with self.assertRaisesRegex(ValueError, 'point 1: mu_s = nan: must be finite'):
+            law.at_points(mu_s=np.ma.array([0.5, 0.6], mask=[False, True]))
+        for values, words in ((du + 0j, 'du: numbers are needed, not complex'), ([['a', 'b']], 'du: numbers are needed .could not'),
+                              (du.astype('timedelta64[s]'), 'du: numbers are needed, not dates')):
+            with self.assertRaisesRegex(TypeError, words):
+                stickslip.update(values, 0.1, law)
+
     def test_what_is_no_law_or_fits_nowhere_is_told(self):
         law, one, many = LAWS['coulomb'], np.array([-0.01, 0.1]), motions(3, 2)
         points, none = law.at_points(mu=[0.1, 0.2, 0.3]), 'an object of stickslip.laws'
