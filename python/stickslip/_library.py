@@ -7,8 +7,6 @@ import pathlib
 import sys
 from typing import NamedTuple
 
-FOLDER = pathlib.Path(__file__).resolve().parent / 'lib'
-
 _int, _int64, _double, _pointer = ctypes.c_int, ctypes.c_int64, ctypes.c_double, ctypes.c_void_p
 _arrays = [_int, _pointer, _double, _int, _pointer, _int, _pointer, _pointer, _pointer]
 
@@ -16,7 +14,9 @@ _arrays = [_int, _pointer, _double, _int, _pointer, _int, _pointer, _pointer, _p
 def load(name: str) -> ctypes.CDLL:
     """A shared library of this package."""
     ending = 'dylib' if sys.platform == 'darwin' else 'so'
-    path = FOLDER / f'lib{name}.{ending}'
+    # An editable installation has modules in one folder of the package and libraries in another.
+    paths = [pathlib.Path(folder).resolve() / 'lib' / f'lib{name}.{ending}' for folder in sys.modules[__package__].__path__]
+    path = next((path for path in paths if path.exists()), paths[0])
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:

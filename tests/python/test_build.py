@@ -40,6 +40,17 @@ for call, words in ((lambda: stickslip.run({'friction': law}), "needs pandas: in
         result = subprocess.run([sys.executable, '-c', program], text=True, capture_output=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
 
+    def test_modules_and_libraries_may_lie_apart_as_editable_installations_have_them(self):
+        program = """import importlib.util, sys
+spec = importlib.util.spec_from_file_location('stickslip', sys.argv[1] + '/__init__.py', submodule_search_locations=sys.argv[1:])
+sys.modules['stickslip'] = stickslip = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(stickslip)
+print(stickslip.update([-1.0, 0.0], 1.0, stickslip.laws.Coulomb(alpha_n=1, alpha_t=1, mu=0.3)).traction[0])
+"""
+        folders = [ROOT / 'python' / 'stickslip', pathlib.Path(stickslip.__file__).parent]
+        result = subprocess.run([sys.executable, '-c', program, *map(str, folders)], text=True, capture_output=True, check=False)
+        self.assertEqual(result.stdout, '-1.0\n', result.stderr)
+
     def test_a_missing_compiler_is_told_with_what_to_install(self):
         with tempfile.TemporaryDirectory() as folder:
             tools = pathlib.Path(folder, 'bin')
