@@ -66,40 +66,46 @@ def simulate(text: str, name: str = 'input', watch: Callable[[float], object] | 
             raised.append(error)
         return 1 if raised else 0
 
-    result = ctypes.c_void_p()
-    arguments = name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result)
-    try:
-        if watch is None or threading.current_thread() is not threading.main_thread():
-            status = _run(*arguments)
-        else:
-            status = _interruptible(arguments, raised)
-        if raised:
-            raise raised[0]
-        tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in TABLES}
-        return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
-    finally:
-        _free(result)
+    def go() -> Output:
+        result = ctypes.c_void_p()
+        status = _run(name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result))
+        try:
+            tables = {} if status == BAD_INPUT or raised else {table: _read(result, table) for table in TABLES}
+            return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
+        finally:
+            _free(result)
+
+    if watch is None or threading.current_thread() is not threading.main_thread():
+        found = [go()]
+    else:
+        found = _interruptible(go, raised)
+    if raised:
+        raise raised[0]
+    return found[0]
 
 
-def _interruptible(arguments: tuple, raised: list[BaseException]) -> int:
-    """A run in a thread of its own. The interpreter raises KeyboardInterrupt in the main thread, and if that is in a run,
-    as soon as a function is called from there, before the function could do anything about it."""
-    status: list[int] = []
+def _interruptible(go: Callable[[], Output], raised: list[BaseException]) -> list[Output]:
+    """What a run gives that goes on in a thread of its own, which ends it once something has been raised. The interpreter raises
+    KeyboardInterrupt in the main thread, and if that is in a run, as soon as a function is called from there, before the
+    function could do anything about it."""
+    found: list[Output] = []
     over = threading.Event()   # join() of an interrupted thread may take it for over (Python 3.11)
 
-    def go() -> None:
+    def go_on() -> None:
         try:
-            status.append(_run(*arguments))
+            found.append(go())
+        except BaseException as error:
+            raised.append(error)
         finally:
             over.set()
 
-    threading.Thread(target=go).start()
+    threading.Thread(target=go_on).start()
     while not over.is_set():
         try:
             over.wait()
         except BaseException as error:
             raised.append(error)
-    return status[0]
+    return found
 
 
 def steady_sliding(text: str, name: str = 'input') -> Output:
