@@ -43,13 +43,14 @@ def bounds(seed):
 def main():
     fits = int(sys.argv[1]) if len(sys.argv) > 1 else 40
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    right = 0
+    right, rows = 0, []
     for seed in range(first, first + fits):
         data = records(seed)
         start = time.process_time()
         fit = stickslip.fit(data, INPUT, free=list(TRUE), bounds=bounds(seed), seed=seed, progress=lambda text: None)
         spent = time.process_time() - start
         good, words = True, []
+        rows.append([])
         for name, true in TRUE.items():
             low, high = fit.intervals[name]
             error, sigma = np.log(fit.values[name] / true), np.log(high / low) / 2 / 1.96
@@ -57,10 +58,15 @@ def main():
             named = (sigma > 0.2) == (name in fit.undetermined)
             good &= bool(abs(error) < 1.3 * 1.96 * sigma and close and named)
             words.append(f'{name} {100 * error:+.1f} ({100 * sigma:.1f})')
+            rows[-1].append((error, sigma))
         right += good
         print(f'seed {seed:3d}: error % (standard deviation %)', ', '.join(words), f'{spent:.1f} s', 'right' if good else 'WRONG',
               flush=True)
     print(f'{right} of {fits} right')
+    error, sigma = np.moveaxis(rows, 2, 0)
+    for name, off, width in zip(TRUE, error.T, sigma.T):
+        print(f'{name:8s} median standard deviation {100 * np.median(width):.2f} %, in its 95 % interval {np.sum(abs(off) < 1.96 * width)} '
+              f'times, root mean square of error over standard deviation {np.sqrt(np.mean((off / width)**2)):.2f}')
 
 
 if __name__ == '__main__':
