@@ -610,6 +610,17 @@ class RateAndState(unittest.TestCase):
             self.assertLess(np.sqrt(np.mean(np.square(off))), 1.4, part)
             self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.6, part)
 
+    def test_records_at_random_times_are_fitted(self):
+        """Two of their samples may be as near to one another as can be, which says nothing about d_c."""
+        draw = np.random.default_rng(5)
+        t = np.append(0.0, np.sort(draw.uniform(0.0, 130.0, 259)))
+        friction = self.independent(t, self.CHANGES, self.VELOCITY) + 2e-5 * draw.normal(size=t.size)
+        found = stickslip.fit_rate_and_state(t, friction, changes=self.CHANGES, velocity=self.VELOCITY, starts=16)
+        for name, true in self.TRUE.items():
+            low, high = found.intervals[name]
+            self.assertLess(abs(np.log(found.values[name] / true)), 1.3 * 0.5 * np.log(high / low), f'{name}: {found}')
+            self.assertLess(high / low, 1.6, name)
+
     def test_other_units_and_a_rig_that_goes_backwards_give_the_same(self):
         friction = self.independent(self.TIME, self.CHANGES, self.VELOCITY) + 2e-4 * np.random.default_rng(1).normal(
             size=self.TIME.size)
