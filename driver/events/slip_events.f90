@@ -8,6 +8,9 @@
 !> block follows a normal traction that falls. In a hold the drive counts as fast as before.
 !> Everything is looked at in the sense of the loading: a mirrored motion has the same events.
 !>
+!> Where a fall goes on slowly - into steady sliding - the event ends once that has lasted as long
+!> as the fall before.
+!>
 !> A force that does not change but for round-off is a plateau: an event begins at the end of one,
 !> and is over at the start of one.
 !>
@@ -73,6 +76,7 @@ module slip_events
         real(dp), private :: held = 0.0_dp        !! static friction force a step ago [F]
         type(slip_event), private :: current = slip_event()           !! the fall so far
         logical, private :: is_event = .false.    !! it was fast enough to be an event
+        real(dp), private :: fast_until = 0.0_dp  !! it was so at this time, if ever [T]
         logical, private :: any_before = .false.
         real(dp), private :: last_onset = 0.0_dp  !! of the event before [T]
     contains
@@ -231,8 +235,10 @@ contains
         self%fastest = max(self%fastest, now%velocity)
         self%slipping = max(self%slipping, slip_rate)
         self%driving = max(self%driving, self%speed)
+        if (slip_rate > limit(self)) self%fast_until = now%time
         if (now%force >= self%trough%force - uncertainty(self, now)) return
         self%trough = now
+        if (self%is_event .and. now%time - self%fast_until > self%fast_until - self%peak%time) return
         self%current%onset = self%peak%time
         self%current%duration = now%time - self%peak%time
         self%current%force_drop = self%peak%force - now%force
@@ -304,7 +310,7 @@ contains
         call self%trough%visit(file)
         call file%visit(self%fastest, self%slipping, self%driving, self%yielding, self%held)
         call self%current%visit(file)
-        call file%visit(self%is_event, self%any_before, self%last_onset)
+        call file%visit(self%is_event, self%any_before, self%last_onset, self%fast_until)
     end subroutine visit
 
     subroutine visit_moment(self, file)

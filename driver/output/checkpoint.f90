@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B73000A', int64)   !! "sticks", and 10
+    integer(int64), parameter :: version = int(z'737469636B73000B', int64)   !! "sticks", and 11
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name
