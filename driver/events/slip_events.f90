@@ -238,7 +238,9 @@ contains
         if (slip_rate > limit(self)) self%fast_until = now%time
         if (now%force >= self%trough%force - uncertainty(self, now)) return
         self%trough = now
-        if (self%is_event .and. now%time - self%fast_until > self%fast_until - self%peak%time) return
+        associate (fast => self%fast_until - self%peak%time, slow => now%time - self%fast_until)
+            if (self%is_event .and. slow > fast) return
+        end associate
         self%current%onset = self%peak%time
         self%current%duration = now%time - self%peak%time
         self%current%force_drop = self%peak%force - now%force

@@ -16,7 +16,7 @@ module continuous_steps
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : controlled, damped, drive_work, elastic, extension, memory, &
-        phase_open, slip, unknowns, velocity
+        phase_open, slider_equations, slip, unknowns, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -39,6 +39,8 @@ module continuous_steps
         logical :: implicit = .false.           !! steps by Rodas4
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
+        real(dp) :: ringing = huge(1.0_dp)      !! explicit steps longer than this amplify that of
+                                                !! an undamped contact [T]
         real(dp) :: open_below = 0.0_dp         !! normal traction that counts as none [F/L^2]
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
         logical :: reloaded = .false.           !! it is not always the same
@@ -78,6 +80,7 @@ contains
                 self%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
+            self%ringing = amplifying_step(eq)
             call self%block%synchronise(start)
             eq%phase = phase_at_rest(eq)
             if (start%normal <= min(0.0_dp, self%open_below)) eq%phase = phase_open
@@ -85,6 +88,23 @@ contains
             if (eq%rigid) call take_off_spring(self%block, start)
         end associate
     end subroutine prepare
+
+    !> The step at which Dormand and Prince's method begins to amplify the oscillation of a block on
+    !> its contact spring, if nothing damps that [T].
+    pure function amplifying_step(eq) result(dt)
+        type(slider_equations), intent(in) :: eq
+        real(dp) :: dt
+        real(dp), parameter :: neutral = 0.998_dp         !! times the angular frequency
+        real(dp), parameter :: least_damping = 1.0e-3_dp  !! ratio
+        real(dp) :: stiffness, critical
+
+        dt = huge(dt)
+        if (eq%rigid .or. .not. eq%mass > 0.0_dp) return
+        stiffness = eq%stiffness + eq%area * eq%alpha
+        critical = 2.0_dp * sqrt(stiffness * eq%mass)
+        if (eq%damping + eq%area * eq%damper >= least_damping * critical) return
+        dt = neutral * sqrt(eq%mass / stiffness)
+    end function amplifying_step
 
     !> Part of the largest normal traction below which a contact under a varying one counts as open:
     !> what is left out is an impulse, and of the order of the square. As the normal traction
@@ -115,7 +135,7 @@ contains
         call self%begin(old, piece)
         again = .false.
         do
-            wanted = min(self%dt, self%dt_max)
+            wanted = min(self%dt, longest(self))
             end = end_of_step(old%time, wanted, self%limit)
             if (.not. self%block%equations%steady) then
                 call find_opening(self%drive, piece, self%open_below, self%block%equations%phase &
@@ -152,6 +172,18 @@ contains
         end associate
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Length of the longest step [T]. An undamped contact that does not slip rings as it began:
+    !> explicit steps that amplify what the error does not see let it go early.
+    pure function longest(self) result(dt)
+        class(continuous), intent(in) :: self
+        real(dp) :: dt
+        real(dp), parameter :: slow = 0.1_dp   !! slip rate, part of the velocity
+
+        dt = self%dt_max
+        if (self%implicit .or. self%block%equations%phase == phase_open) return
+        if (self%block%first(slip) <= slow * abs(self%block%y(velocity))) dt = min(dt, self%ringing)
+    end function longest
 
     !> Takes the block to what holds from the start of a step on.
     subroutine begin(self, old, piece)

@@ -33,6 +33,16 @@ class EventsOfRuns(Program):
 
 
 class Events(EventsOfRuns):
+    def test_an_undamped_contact_rings_as_it_began_until_it_slips(self):
+        # explicit steps amplified that to what the error sees, and let it go 0.8 early at 1e-4
+        onsets = [self.events(f"""&friction law='slip_weakening', alpha_n=1e3, alpha_t=1e3, mu_s=0.4, mu_k=0.2, d_c=0.1 /
+                &slider mass=0.1, stiffness=1, normal_traction=10 /
+                &drive velocity=0.01 /
+                &time t_end=410, rtol={rtol} /""")[0]['onset'] for rtol in (1e-4, 1e-5, 1e-9)]
+        self.assertAlmostEqual(onsets[2], (4 + 4 / 1e3) / 0.01, delta=0.3)   # it slips then; the force turns a little later
+        for onset in onsets[:2]:
+            self.assertAlmostEqual(onset, onsets[2], delta=0.02)
+
     def test_a_block_pulled_the_other_way_has_the_same_events(self):
         for steps in ('dt=1e-3', 'rtol=1e-6'):
             tables = [self.events(BLOCK + f'&drive velocity={v} / &time t_end=30, {steps} /') for v in (1, -1)]
