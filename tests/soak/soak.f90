@@ -256,8 +256,8 @@ contains
         slip = t%new(7) - t%old(7)
         if (nint(t%props(1)) == 1 .and. slip > 0.0_dp .and. capped(t)) inner = max(inner, &
             abs(t%new(5:6) - t%old(5:6)) * (length / slip))
-        ! Its coefficient falls with the slip, which rounds by the displacements; beside a cohesion that
-        ! carries nearly all of the traction nothing else tells the slip.
+        ! Its coefficient falls with the slip, which rounds by the displacements; beside a cohesion
+        ! that carries nearly all of the traction nothing else tells the slip.
         if (nint(t%props(1)) == 1 .and. slip > 0.0_dp) condition = 1.0_dp + abs(t%new(5) &
             - t%old(5)) / inner(1) * (length / slip) / 300.0_dp
         apart = max(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
