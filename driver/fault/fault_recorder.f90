@@ -26,7 +26,7 @@ module fault_recorder
         logical :: writes = .false.              !! this process does
         logical, private :: draws_contours = .false.
     contains
-        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes, bytes
+        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes
         procedure, private :: write_rows, write_contours, contours_until, write_event
     end type recorder
 
@@ -105,7 +105,7 @@ contains
         end do
     end subroutine go_on
 
-    !> Lengths of the files so far [bytes]; whole numbers.
+    !> Lengths of the files so far [bytes]; whole numbers, 0 on all processes but the first.
     pure function sizes(self) result(bytes)
         class(recorder), intent(in) :: self
         real(dp) :: bytes(3 + size(self%stations))
@@ -113,15 +113,6 @@ contains
         bytes = real([self%global%bytes, self%events%bytes, self%contours%bytes, &
             self%stations%bytes], dp)
     end function sizes
-
-    !> Of all files so far; 0 on all processes but the first.
-    pure function bytes(self) result(total)
-        class(recorder), intent(in) :: self
-        integer(int64) :: total
-
-        total = self%global%bytes + self%events%bytes + self%contours%bytes &
-            + sum(self%stations%bytes)
-    end function bytes
 
     !> The first row, of the state at the start.
     subroutine begin(self, here, together, state, watch)

@@ -142,7 +142,7 @@ contains
         character(len=:), allocatable, intent(inout) :: problem
         logical :: stop_now, full
 
-        full = real(live%records%bytes() + live%fields%bytes(live%here), dp) > gigabyte &
+        full = sum(live%records%sizes()) + real(live%fields%bytes(live%here), dp) > gigabyte &
             * live%here%plan%table_limit   ! the first process knows
         stop_now = together%any_of(full .or. interrupted())
         if (.not. stop_now) then
