@@ -4,8 +4,10 @@
 !> Cells are separated by commas, semicolons, tabs or blanks, and may stand in double quotes. The
 !> line of column names is found by the names that are asked for; titles before it, up to two rows
 !> of units or the like behind it, other columns, empty lines and lines that start with # or %
-!> are left alone. A line of names may itself be such a comment. Numbers have a decimal point or a
-!> decimal comma, the same in the whole file. Commas that may as well part thousands are refused.
+!> are left alone. Rows may end before columns that nobody asks for (comments), if not the last one
+!> alone does: that file was cut short. A line of names may itself be such a comment. Numbers have a
+!> decimal point or a decimal comma, the same in the whole file. Commas that may as well part
+!> thousands are refused.
 module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
@@ -53,7 +55,8 @@ module csv_table
         integer :: header_line = 0
         type(line_text), allocatable :: titles(:)     !! of the columns
         logical :: sound = .true.                     !! all of their quotes are closed
-        integer :: least_cells = 0                    !! up to the last column with a name
+        integer :: named_cells = 0                    !! up to the last column with a name
+        integer :: least_cells = 0                    !! up to the last column asked for
         integer, allocatable :: places(:)             !! of the columns asked for; 0: not there
         integer :: mark = 0                           !! 1 decimal point, 2 comma; 0 none so far
         integer :: mark_line = 0                      !! where the first one is
@@ -62,6 +65,8 @@ module csv_table
         logical :: sure = .false.                     !! a comma can only be a decimal one
         integer :: word_rows = 0                      !! rows of units or the like so far
         integer :: empty_row = 0                      !! the last row of nothing but separators
+        integer :: last_cells = 0                     !! of the row before
+        integer :: cut_line = 0                       !! of a row shorter than header and row before
     end type file_form
 
     !> The cells of a line.
@@ -144,6 +149,8 @@ contains
                 // 'mark, or does it part thousands? No number of the file tells: write it ' &
                 // 'without, or separate the cells by semicolons')
         end if
+        if (form%cut_line > 0) call read_in%add_fault(form%cut_line, other_size(form, &
+            form%last_cells) // ', and the row before has more: the file is cut short')
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
     end subroutine take_text
@@ -235,14 +242,16 @@ contains
         if (allocated(form%titles)) deallocate (form%titles, form%places)
         allocate (form%titles(cells%n), form%places(size(requests)))
         form%sound = cells%sound
-        form%least_cells = 0
+        form%named_cells = 0
         do i = 1, cells%n
             form%titles(i)%text = text(cells%first(i):cells%last(i))
-            if (len(form%titles(i)%text) > 0) form%least_cells = i
+            if (len(form%titles(i)%text) > 0) form%named_cells = i
         end do
         do i = 1, size(requests)
             form%places(i) = sum(places_of(requests(i), form%titles, most=1))
         end do
+        form%least_cells = form%named_cells   ! blanks do not show which cell is missing
+        if (form%separator /= ' ') form%least_cells = maxval([0, form%places])
     end subroutine read_titles
 
     !> The columns that have the name asked for: as it is written if there is one, else without
@@ -395,7 +404,6 @@ contains
         type(line_cells), intent(in) :: cells
         integer, intent(inout) :: rows     !! taken so far
         type(table), intent(inout) :: read_in
-        character(len=80) :: numbers
         integer :: place, column, i
 
         if (.not. cells%sound) then
@@ -413,14 +421,14 @@ contains
         if (form%empty_row > 0) call read_in%add_fault(form%empty_row, &
             'the row is empty, and there are others behind it')
         form%empty_row = 0
-        if (cells%n < form%least_cells .or. any(cells%last(size(form%titles) + 1:cells%n) &
-            >= cells%first(size(form%titles) + 1:cells%n))) then
-            write (numbers, '(a, i0, a, i0)') ': ', cells%n, ' for ', form%least_cells
-            if (form%separator == ',' .and. cells%n > form%least_cells) numbers = &
-                trim(numbers) // ' (cells with a decimal comma need quotes)'
-            call read_in%add_fault(line, 'has not as many cells as the header' // trim(numbers))
+        if (cells%n < form%least_cells .or. any(cells%last(form%named_cells + 1:cells%n) &
+            >= cells%first(form%named_cells + 1:cells%n))) then
+            call read_in%add_fault(line, other_size(form, cells%n))
             return
         end if
+        form%cut_line = 0
+        if (cells%n < min(form%named_cells, form%last_cells)) form%cut_line = line
+        form%last_cells = cells%n
         rows = rows + 1
         read_in%lines(rows) = line
         column = 0
@@ -440,6 +448,18 @@ contains
             end associate
         end do
     end subroutine take_row
+
+    !> What is wrong with a row of too few cells, or of cells without a name.
+    pure function other_size(form, n) result(text)
+        type(file_form), intent(in) :: form
+        integer, intent(in) :: n                      !! cells of the row
+        character(len=:), allocatable :: text
+
+        text = 'has not as many cells as the header: ' // whole_text(n) // ' for ' &
+            // whole_text(form%named_cells)
+        if (form%separator == ',' .and. n > form%named_cells) text = text &
+            // ' (cells with a decimal comma need quotes)'
+    end function other_size
 
     !> A row of units or the like: none of its cells that count looks like a number.
     pure function holds_words_only(text, form, cells) result(yes)
@@ -569,6 +589,10 @@ contains
             quote = closing_quote(text, at, last)
             sound = sound .and. quote <= last
             next = quote + 1
+            do while (at < quote)   ! numbers may be filled up with blanks inside their quotes
+                if (.not. is_blank(text(at:at))) exit
+                at = at + 1
+            end do
         end if
         do while (next <= last)
             if (text(next:next) == separator) exit

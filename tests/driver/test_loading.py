@@ -52,7 +52,9 @@ class Programme(Columns):
                 'Time [s],DISPLACEMENT (mm),Normal/MPa\n[s],mm,MPa\n' + self.PLAIN.split('\n', 1)[1],
                 'time,displacement,normal\nTest,Test,Test\ns,-,mm^2\n' + self.PLAIN.split('\n', 1)[1],
                 'time,displacement,normal,\n12.5,3,10,\n12.55,3.05,10,\n12.6,3.2,20,\n,,,\n,,,\n',
-                'time,displacement,normal\n-1e1,0,1D1\n-9.95,0.05,+10.\n-9.9,.2,20,,\n'):
+                'time,displacement,normal\n-1e1,0,1D1\n-9.95,0.05,+10.\n-9.9,.2,20,,\n',
+                '"  time"; "displacement"; "normal"\n"   0"; "   0"; "  10"\n"0.05 "; "0.05"; "10"\n"  .1"; " .2"; "20"\n',
+                'X_Value\n***End_of_Header***\ntime\tdisplacement\tnormal\tComment\n0\t0\t10\tstart\n0.05\t0.05\t10\n0.1\t0.2\t20\n'):
             run = self.run_columns(self.with_file(content))
             for key in ('drive', 'displacement', 'friction_force'):
                 for a, b in zip(run[key], expected[key]):
@@ -879,6 +881,9 @@ class BadProgramme(Columns):
                 ('time [s],time [min],velocity\n0,0,1\n1,1,1\n', "line 1: columns 'time [s]' and 'time [min]' may both"),
                 ('time,velocity\n0,1\n1\n', 'line 3: has not as many cells as the header: 1 for 2'),
                 ('time,velocity\n0,1\n1,1,5\n', 'line 3: has not as many cells as the header: 3 for 2'),
+                ('time,velocity,\n0,1,5,\n1,2,5,\n', 'line 2: has not as many cells as the header: 4 for 2 (cells with a dec'),
+                ('time,velocity,note\n0,1,a\n1,1.25,b\n2,1.', 'line 4: has not as many cells as the header: 2 for 3, and the row'),
+                ('time velocity note\n0 1 a\n1 1.25\n2 1 b\n', 'line 3: has not as many cells as the header: 2 for 3'),
                 ('time,velocity\n0,0,1\n1,1,5\n', 'line 2: has not as many cells as the header: 3 for 2 (cells with a dec'),
                 ('time,velocity\n0,1\n,,\n2,1\n', 'line 3: the row is empty, and there are others behind it'),
                 ('time,velocity,x\n0,1,\n1,,2\n', "line 3: velocity = '': must be a finite number, and the cell is empty"),
