@@ -10,8 +10,11 @@ def numbers(values: Any, what: str) -> np.ndarray:
     """An array of 64-bit floats; what is masked is NaN. TypeError where there are no numbers, or complex ones, or dates; text that
     is a number counts as one."""
     if isinstance(values, np.ma.MaskedArray):
-        values = values.astype(values.dtype if values.dtype.kind == 'c' else float).filled(np.nan)
-    array = np.asarray(values)
+        values = np.ma.filled(values.astype(values.dtype if values.dtype.kind == 'c' else float), np.nan)
+    try:
+        array = np.asarray(values)
+    except ValueError as error:   # of lists whose lengths differ
+        raise ValueError(f'{what}: numbers in rows of one length are needed ({error})') from None
     if array.dtype.kind == 'c':
         raise TypeError(f'{what}: numbers are needed, not complex ones')
     if array.dtype.kind in 'mM':
@@ -20,6 +23,18 @@ def numbers(values: Any, what: str) -> np.ndarray:
         return array.astype(np.float64, copy=False)
     except (TypeError, ValueError) as error:
         raise TypeError(f'{what}: numbers are needed ({error})') from None
+
+
+def number(value: Any, what: str) -> float:
+    """A single number; TypeError where it is none, or text."""
+    if isinstance(value, (str, bytes)):
+        raise TypeError(f'{what} = {value!r}: a number is needed')
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f'{what} = {value!r}: a number is needed') from None
+    except OverflowError:
+        raise ValueError(f'{what}: must be finite, and is larger than any number here') from None
 
 
 def row_of(values: Any, what: str) -> np.ndarray:

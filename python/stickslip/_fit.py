@@ -382,7 +382,7 @@ def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, mis
                 f'{told["peak"]["computed"]:.4g} and {told["slope"]["computed"]:.4g}']
     names = np.array(target.names)
     parts = {feature: np.sqrt(np.mean(misfit[names == feature]**2)) for feature in dict.fromkeys(target.names)}
-    worst = max(parts, key=parts.get)
+    worst = max(parts, key=lambda feature: parts[feature])
     noise = np.sum(by_noise**2, axis=0)
     if misfit @ misfit > noise.mean() + UNEXPLAINED * noise.std():
         return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '

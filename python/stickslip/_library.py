@@ -5,10 +5,10 @@ import ctypes
 import functools
 import pathlib
 import sys
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 _int, _int64, _double, _pointer = ctypes.c_int, ctypes.c_int64, ctypes.c_double, ctypes.c_void_p
-_arrays = [_int, _pointer, _double, _int, _pointer, _int, _pointer, _pointer, _pointer]
+_arrays: tuple[Any, ...] = (_int, _pointer, _double, _int, _pointer, _int, _pointer, _pointer, _pointer)
 
 
 def load(name: str) -> ctypes.CDLL:
@@ -103,7 +103,7 @@ def constants_of(law: int) -> tuple[Constant, ...]:
     found = []
     for place in range(1, facts.constants):
         library.friction_get_constant(law, place, ctypes.byref(constant))
-        found.append(Constant(*(text.decode() for text in (constant.name, constant.unit, constant.meaning, constant.rule)),
+        found.append(Constant(constant.name.decode(), constant.unit.decode(), constant.meaning.decode(), constant.rule.decode(),
                               bool(constant.optional), constant.default_text.decode(),
                               tuple(constant.words.decode().split()) if constant.choice else ()))
     return tuple(found)
@@ -117,7 +117,7 @@ def default_of(props: list[float]) -> float | None:
     return value.value if status == 0 else None
 
 
-def broken_rule(props: _pointer, size: int) -> str:
+def broken_rule(props: ctypes.c_void_p, size: int) -> str:
     """Which constant breaks which rule; empty if none does."""
     text = ctypes.create_string_buffer(96)
     status = library.friction_check(size, props, len(text), text)

@@ -7,14 +7,17 @@ import os
 import pathlib
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
 from . import _program
+from ._arrays import numbers
 from .laws import Law
 
 Settings = dict[str, dict[str, Any]]
+Source = Union[str, pathlib.Path, Mapping[str, Any]]
+NAME = re.compile(r'[a-z_]\w*(\(\s*\d+\s*\))?', re.IGNORECASE | re.ASCII)   # of a group, or of a key and its place in a list
 
 
 class InputError(ValueError):
@@ -29,7 +32,7 @@ def merge(base: Settings, other: Settings) -> Settings:
     return merged
 
 
-def groups_of(source: str | pathlib.Path | dict) -> Settings:
+def groups_of(source: Source) -> Settings:
     """Groups of keys from a file's name, a namelist's text, or a dict whose group ``friction`` may be a law."""
     if isinstance(source, Mapping):
         groups = {}
@@ -50,9 +53,12 @@ def groups_of(source: str | pathlib.Path | dict) -> Settings:
 
 def _input_of(source: str | pathlib.Path) -> _program.Namelists:
     """What a namelist says; InputError with all that is wrong with the way in which it is written."""
-    is_file = not is_text(source)
-    content = pathlib.Path(source).read_bytes() if is_file else source.encode()
-    read = _program.namelists(content, str(source) if is_file else 'input')
+    if not isinstance(source, (str, os.PathLike)):
+        raise TypeError(f'input: the name or the text of a namelist, or a dict, is needed, not {source!r}')
+    if isinstance(source, str) and is_text(source):
+        read = _program.namelists(source.encode(errors='replace'), 'input')
+    else:
+        read = _program.namelists(pathlib.Path(source).read_bytes(), str(source))
     if read.faults:
         raise InputError(read.faults.rstrip())
     return read
@@ -64,18 +70,20 @@ def _lowered(named: Mapping[str, Any], what: str) -> dict[str, Any]:
     for name, value in named.items():
         if not isinstance(name, str):
             raise TypeError(f'{what} {name!r}: a name is needed')
+        if not NAME.fullmatch(name):
+            raise InputError(f'{what} {name!r}: must be a name: letters, digits and underscores')
         if name.lower() in lowered:
             raise InputError(f'{what} {name.lower()}: given twice')
         lowered[name.lower()] = value
     return lowered
 
 
-def is_text(source: str | pathlib.Path) -> bool:
+def is_text(source: Any) -> bool:
     """Is it a namelist itself, rather than the name of one?"""
     return isinstance(source, str) and '&' in source and ('\n' in source or re.match(r'\s*&\w+(\s|/\s*$)', source) is not None)
 
 
-def text_of(source: str | pathlib.Path | dict) -> str:
+def text_of(source: Source) -> str:
     """The text of a namelist."""
     if isinstance(source, Mapping):
         return written(groups_of(source))
@@ -96,7 +104,13 @@ def _value(value: Any, where: str) -> str:
     if isinstance(value, (bool, np.bool_)):
         return '.true.' if value else '.false.'
     if isinstance(value, str):
+        if re.search('[\n\r\0\ud800-\udfff]', value):
+            raise InputError(f'{where} = {value!r}: must be text of one line')
         return "'" + value.replace("'", "''") + "'"
+    if isinstance(value, (np.datetime64, np.timedelta64)):
+        raise TypeError(f'{where}: {value!r} is no number, but a time')
+    if isinstance(value, np.ma.MaskedArray):   # NaN where it is masked, which the program refuses
+        return _value(numbers(value, where).tolist(), where)
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):

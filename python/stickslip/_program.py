@@ -68,7 +68,7 @@ def simulate(text: str, name: str = 'input', watch: Callable[[float], object] | 
 
     def go() -> Output:
         result = ctypes.c_void_p()
-        status = _run(name.encode(), text.encode(), _watch_type(told), None, ctypes.byref(result))
+        status = _run(name.encode(errors='replace'), text.encode(), _watch_type(told), None, ctypes.byref(result))
         try:
             tables = {} if status == BAD_INPUT or raised else {table: _read(result, table) for table in TABLES}
             return Output(status, tables, {report: _report(result, report.encode()).decode() for report in REPORTS})
@@ -112,7 +112,7 @@ def steady_sliding(text: str, name: str = 'input') -> Output:
     """Stability of steady sliding on the text of a namelist: the tables 'stability' and 'eigenvalues', the reports 'faults' and
     'reasons'."""
     result = ctypes.c_void_p()
-    status = _stability(name.encode(), text.encode(), ctypes.byref(result))
+    status = _stability(name.encode(errors='replace'), text.encode(), ctypes.byref(result))
     try:
         tables = {} if status == BAD_INPUT else {table: _read(result, table) for table in ('stability', 'eigenvalues')}
         return Output(status, tables, {report: _report(result, report.encode()).decode() for report in ('faults', 'reasons')})
@@ -133,8 +133,8 @@ def namelists(content: bytes, name: str = 'input') -> Namelists:
     result = ctypes.c_void_p()
     status = _groups(name.encode(errors='replace'), content, len(content), ctypes.byref(result))
     try:
-        groups, text, faults = (_report(result, report) for report in (b'groups', b'text', b'faults'))
-        return Namelists(json.loads(groups) if status == DONE else {}, text.decode(errors='replace'), faults.decode(errors='replace'))
+        groups, text, faults = (_report(result, report).decode(errors='replace') for report in (b'groups', b'text', b'faults'))
+        return Namelists(json.loads(groups) if status == DONE else {}, text, faults)
     finally:
         _free(result)
 
@@ -155,7 +155,8 @@ def _read(result: ctypes.c_void_p, table: str) -> Table:
     rows, columns, names = ctypes.c_int64(), ctypes.c_int(), ctypes.c_char_p()
     address = _table(result, table.encode(), ctypes.byref(rows), ctypes.byref(columns), ctypes.byref(names))
     shape = (rows.value, columns.value)
+    titles = (names.value or b'').decode().split(',')
     if shape[0] == 0:
-        return Table(names.value.decode().split(','), np.empty(shape))
+        return Table(titles, np.empty(shape))
     numbers = (ctypes.c_double * (shape[0] * shape[1])).from_address(address)
-    return Table(names.value.decode().split(','), np.array(numbers).reshape(shape))
+    return Table(titles, np.array(numbers).reshape(shape))

@@ -4,8 +4,8 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import pathlib
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from ._arrays import row_of
 from ._optional import needed
 from ._run import series
 from ._search import checked_bounds
-from .laws import Law, RateAndState
+from .laws import Law, classes
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -45,7 +45,7 @@ class RateStateFit:
 
     def law(self, *, alpha_n: float, alpha_t: float, v0: float, f0: float, evolution: str = 'ageing') -> Law:
         """The law with the values found, for `update` and `run`."""
-        return RateAndState(alpha_n=alpha_n, alpha_t=alpha_t, v0=v0, f0=f0, evolution=evolution,
+        return classes['rate_and_state'](alpha_n=alpha_n, alpha_t=alpha_t, v0=v0, f0=f0, evolution=evolution,
                             **{name: self.values[name] for name in ('a', 'b', 'd_c')})
 
     def __str__(self) -> str:
@@ -73,8 +73,8 @@ class RateStateFit:
         return figure
 
 
-def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: Sequence[float],
-                       displacement: ArrayLike | None = None, velocity: Sequence[float] | None = None,
+def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: ArrayLike,
+                       displacement: ArrayLike | None = None, velocity: ArrayLike | None = None,
                        bounds: Mapping[str, tuple[float, float]] | None = None, evolution: str = 'ageing', seed: int = 1,
                        starts: int = 64) -> RateStateFit:
     """Fits a, b, d_c and the stiffness of the loading to friction under a drive of constant velocity, piece by piece.
@@ -119,12 +119,11 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: Sequenc
         found = least_squares(misfit, point, jacobian, bounds=(low, high), x_scale=0.3, max_nfev=40)
         if best is None or found.cost < best.cost:
             best = found
-    if record.model(np.exp(best.x), evolution) is None:
-        raise ValueError('no constants within the bounds give a run that ends: where the spring is softer than friction weakens, '
-                         'sliding without mass is unstable; give other bounds')
     return _assess(record, best.x, misfit(best.x), jacobian(best.x), limits, evolution)
 
 
+NO_RUN = ('no constants within the bounds give a run that ends: where the spring is softer than friction weakens, sliding without mass is '
+          'unstable; give other bounds')
 EVOLUTIONS = ('ageing', 'slip')
 
 
@@ -200,10 +199,8 @@ def _between(time: np.ndarray, rows: np.ndarray, force: np.ndarray, after: np.nd
             + length * s * (1.0 - s) * (after[i] * (1.0 - s) - before[i] * s))
 
 
-def _prepare(time: ArrayLike, friction: ArrayLike, changes: Sequence[float], displacement: ArrayLike | None,
-             velocity: Sequence[float] | None) -> _Steps:
-    time, friction = row_of(time, 'time'), row_of(friction, 'friction')
-    changes = row_of(changes, 'changes')
+def _prepare(time: Any, friction: Any, changes: Any, displacement: Any, velocity: Any) -> _Steps:
+    time, friction, changes = row_of(time, 'time'), row_of(friction, 'friction'), row_of(changes, 'changes')
     if time.size != friction.size or time.size < 50:
         raise ValueError(f'{time.size} times and {friction.size} values of friction: as many of each are needed, at least 50')
     if not (np.isfinite(time).all() and np.isfinite(friction).all()):
@@ -277,7 +274,10 @@ def _assess(record: _Steps, at: np.ndarray, misfit: np.ndarray, slope: np.ndarra
     if rms > 2.0:
         warnings.append(f'what is left over is {rms:.2g} times the noise from sample to sample: the law does not explain all of '
                         'it, or the noise lasts')
-    model = record.sense * record.with_trend(record.model(np.exp(at), evolution))
+    computed = record.model(np.exp(at), evolution)
+    if computed is None:
+        raise ValueError(NO_RUN)
+    model = record.sense * record.with_trend(computed)
     return RateStateFit(dict(zip(NAMES, np.exp(at).tolist())), intervals, covariance / np.outer(deviation, deviation),
                         [name for name, s in zip(NAMES, deviation) if not s <= UNDETERMINED], warnings, rms,
                         record.time, record.sense * record.friction, model)

@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from ._arrays import numbers
+from ._arrays import number, numbers
 from ._update import STATE_SIZE
 from .laws import AtPoints, Law, require_law
 
@@ -55,7 +55,8 @@ def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
         status[i] = _library.rates(velocity.shape[-1], velocity.ctypes.data + i * velocity.strides[0], law._size,
                                    law._pointer, STATE_SIZE, state.ctypes.data + i * state.strides[0],
                                    found.ctypes.data + i * found.strides[0])
-    return Rates(found, int(status[0]) if velocity.ndim == 1 else status)
+    one: Any = int(status[0]) if velocity.ndim == 1 else status
+    return Rates(found, one)
 
 
 def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: ArrayLike, damping: float = 0.0) -> SlipRates:
@@ -72,18 +73,18 @@ def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: 
     lock; more than 2000 points are shared out among OpenMP's threads.
     """
     require_law(law, own=True)
-    own = isinstance(law, AtPoints)
-    damping = ctypes.c_double(damping)
+    points = (len(law),) if isinstance(law, AtPoints) else ()
+    drag = ctypes.c_double(number(damping, 'damping'))
     given = numbers(tau, 'tau'), numbers(pressure, 'pressure'), numbers(theta, 'theta')
-    shape = np.broadcast_shapes(*(values.shape for values in given), (len(law),) if own else ())
+    shape = np.broadcast_shapes(*(values.shape for values in given), points)
     tau, pressure, theta = (np.ascontiguousarray(np.broadcast_to(values, shape)) for values in given)
     n = tau.size
-    if own and shape != (len(law),):
-        raise ValueError(f'the law has constants of {len(law)} points, the other arguments the shape {shape}')
-    props = law.props if own else np.repeat(law.props[:, None], n, axis=1)
+    if points and shape != points:
+        raise ValueError(f'the law has constants of {points[0]} points, the other arguments the shape {shape}')
+    props = law.props if points else np.repeat(law.props[:, None], n, axis=1)
     if len(props) < LEAST_PROPS:   # so that the status says that the law is the wrong one
         props = np.concatenate([props, np.zeros((LEAST_PROPS - len(props), n))])
     rate, theta_rate, status = np.full(shape, np.nan), np.full(shape, np.nan), np.empty(shape, np.int32)
-    _library.slip_rates(n, tau.ctypes.data, pressure.ctypes.data, damping, len(props), props.ctypes.data, theta.ctypes.data,
+    _library.slip_rates(n, tau.ctypes.data, pressure.ctypes.data, drag, len(props), props.ctypes.data, theta.ctypes.data,
                         rate.ctypes.data, theta_rate.ctypes.data, status.ctypes.data)
     return SlipRates(rate, theta_rate, status)

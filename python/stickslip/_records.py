@@ -99,12 +99,14 @@ def _check_numbers(path: pathlib.Path, **given: float | None) -> None:
     for name, value in given.items():
         if value is not None and (isinstance(value, str) or not np.isfinite(value)):
             raise RecordError(f'{path}: {name} = {value!r}: must be a finite number')
-    if not given['time_factor'] > 0.0:
+    time_factor = given['time_factor']
+    if time_factor is None or not time_factor > 0.0:
         raise RecordError(f'{path}: time_factor = {given["time_factor"]}: must be > 0')
     if given['force_factor'] == 0.0:
         raise RecordError(f'{path}: force_factor = 0: must not be 0')
-    if None not in (given['start'], given['end']) and not given['start'] < given['end']:
-        raise RecordError(f'{path}: start = {given["start"]:g}, end = {given["end"]:g}: start must be below end')
+    start, end = given['start'], given['end']
+    if start is not None and end is not None and not start < end:
+        raise RecordError(f'{path}: start = {start:g}, end = {end:g}: start must be below end')
 
 
 def _read_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarray]:
@@ -191,8 +193,8 @@ def find_falls(time: np.ndarray, force: np.ndarray, threshold: float) -> Falls:
         below = i + int(np.argmax(force[i:j + 1] < level))
         part = (force[below - 1] - level) / (force[below - 1] - force[below])
         middle[k] = time[below - 1] + part * (time[below] - time[below - 1])
-    peaks, troughs = np.array(peaks, int), np.array(troughs, int)
-    return Falls(time[peaks], time[troughs], middle, force[peaks], force[troughs])
+    at_peak, at_trough = np.array(peaks, int), np.array(troughs, int)
+    return Falls(time[at_peak], time[at_trough], middle, force[at_peak], force[at_trough])
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 import warnings as python_warnings
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -61,7 +62,7 @@ class Run:
         return figure
 
 
-def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
+def run(input: str | pathlib.Path | Mapping[str, Any]) -> Run:
     """Runs the program's slider in this process, without files.
 
     input: a namelist (the name of its file, or its text), or a dict of groups, each a dict of keys; the group
@@ -73,7 +74,7 @@ def run(input: str | pathlib.Path | dict[str, Any]) -> Run:
     """
     pandas = needed('pandas', 'run')
     name = 'input'
-    if not isinstance(input, dict) and not _namelist.is_text(input):
+    if not isinstance(input, Mapping) and not _namelist.is_text(input):
         name = str(input)
     output = _program.simulate(_namelist.text_of(input), name, lambda _part: None)
     if output.status == _program.BAD_INPUT:
@@ -101,7 +102,8 @@ def check_runs(settings: dict[str, dict[str, Any]]) -> None:
 def spring_force(settings: dict[str, dict[str, Any]]) -> tuple[np.ndarray, np.ndarray] | None:
     """Time and spring force of a run on groups of keys; None where it fails, or where its constants are not valid
     together, as candidates of a search may be."""
-    return series(settings, 'time', 'spring_force')
+    found = series(settings, 'time', 'spring_force')
+    return None if found is None else (found[0], found[1])
 
 
 def series(settings: dict[str, dict[str, Any]], *columns: str) -> tuple[np.ndarray, ...] | None:

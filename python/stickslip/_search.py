@@ -164,8 +164,10 @@ class Problem:
             scale = float(np.median(analysis.falls.peak))
             first_load = target.first_load
             wanted = outline(analysis.falls, first_load, scale, analysis.period)
+            if wanted is None:
+                raise NoStickSlip
             result = self.run(candidate, target, self.expected_end(target, 4), COARSE)
-            found = None
+            found: np.ndarray | None = None
             if result is not None:
                 time, force = analysis.like(*result)
                 falls = find_falls(time, smooth(force, analysis.window), analysis.threshold)
@@ -182,7 +184,7 @@ class Problem:
     def evaluate(self, kind: str, candidates: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Coarse misfits, or all features, of several candidates; what the journal has is not simulated again."""
         function = {'coarse': self.coarse_misfit, 'full': self.all_features}[kind]
-        known = [self.journal.get(kind, candidate) for candidate in candidates]
+        known: list[Any] = [self.journal.get(kind, candidate) for candidate in candidates]
         missing = [i for i, values in enumerate(known) if values is None]
         run_all = self.pool.map if self.pool is not None else map
         allowed = missing[:self.limits.left()]   # as many whatever the number of threads
@@ -215,7 +217,7 @@ def set_times(settings: Settings, end: float, step: float, rtol: float = FINE) -
     """Gives a run its end, and rows at the record's samples. Steps are adaptive, in continuous time: fixed ones with the
     update by backward Euler bias the constants."""
     time = settings.get('time', {})
-    kept = {key: time[key] for key in ('dt_min', 'dt_max') if key in time}
+    kept: dict[str, Any] = {key: time[key] for key in ('dt_min', 'dt_max') if key in time}
     settings['time'] = {'t_end': float(end), 'rtol': max(float(time.get('rtol', FINE)), rtol), **kept}
     settings['output'] = {'every': float(step)}
     settings.get('friction', {}).pop('scheme', None)
@@ -295,7 +297,7 @@ class Journal:
             self.file = None
 
 
-def _key(candidate: Sequence[float]) -> bytes:
+def _key(candidate: Sequence[float] | np.ndarray) -> bytes:
     return np.asarray(candidate, float).tobytes()
 
 
@@ -341,7 +343,7 @@ def search(problem: Problem, seed: int, starts: int) -> tuple[np.ndarray, str]:
         if found is None:
             raise ValueError(f'the search was stopped {stop}, before any candidate showed stick-slip') from None
         return found, f'the search was stopped {stop}: the values are the best so far'
-    return best.candidate, ''
+    return best.place, ''
 
 
 @dataclasses.dataclass
@@ -355,6 +357,13 @@ class Best:
     def update(self, found: tuple[np.ndarray, float]) -> None:
         if found[1] < self.cost:
             self.candidate, self.cost = found
+
+    @property
+    def place(self) -> np.ndarray:
+        """The candidate; NoStickSlip where no misfit was a number."""
+        if self.candidate is None:
+            raise NoStickSlip
+        return self.candidate
 
 
 def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.ndarray, float]:
@@ -383,8 +392,8 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
         if _fine(problem, candidate, best, f'fine {k + 1} of at most {len(coarse)}'):
             break
     problem.limits.tell('last steps')
-    problem.shift = _shift_by_noise(problem, best.candidate)
-    return _descend(problem, best.candidate, FLOOR, STEP, 'linear', 30, 1e-7)
+    problem.shift = _shift_by_noise(problem, best.place)
+    return _descend(problem, best.place, FLOOR, STEP, 'linear', 30, 1e-7)
 
 
 def _fine(problem: Problem, candidate: np.ndarray, best: Best, label: str) -> bool:
@@ -399,7 +408,7 @@ def _fine(problem: Problem, candidate: np.ndarray, best: Best, label: str) -> bo
             return True
         if k > 0 and cost > HOPELESS * other:
             return False
-    return best.cost < _by_noise_alone(problem, best.candidate)
+    return best.cost < _by_noise_alone(problem, best.place)
 
 
 SAME = 1.5          # times the misfit of another start: the same valley
@@ -472,9 +481,9 @@ def along_valley(problem: Problem, candidate: np.ndarray, slope: np.ndarray, whi
                 break
         problem.limits.tell('error bars')
     order = np.argsort([place[held] for place in places])
-    way, costs = np.array(places)[order], np.array(costs)[order]
+    way, along = np.array(places)[order], np.array(costs)[order]
     fine = np.linspace(way[0, held], way[-1, held], 400)
-    weights = np.exp(-0.5 * (np.interp(fine, way[:, held], costs) - costs.min()))
+    weights = np.exp(-0.5 * (np.interp(fine, way[:, held], along) - along.min()))
     apart = np.column_stack([np.interp(fine, way[:, held], values) for values in way.T]) - candidate
     return (weights[:, None] * apart).T @ apart / weights.sum(), direction
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _namelist, _program
@@ -24,7 +25,7 @@ class Stability:
     eigenvalues: list[np.ndarray]    #: of each row, complex, the one that grows fastest first [1/T]
 
 
-def stability(input: str | pathlib.Path | dict[str, Any]) -> Stability:
+def stability(input: str | pathlib.Path | Mapping[str, Any]) -> Stability:
     """Tells whether steady sliding of the program's slider is stable, and at which stiffness, velocity, damping and mass that changes.
 
     input: as for `run`.
@@ -34,7 +35,7 @@ def stability(input: str | pathlib.Path | dict[str, Any]) -> Stability:
     """
     pandas = needed('pandas', 'run')
     name = 'input'
-    if not isinstance(input, dict) and not _namelist.is_text(input):
+    if not isinstance(input, Mapping) and not _namelist.is_text(input):
         name = str(input)
     output = _program.steady_sliding(_namelist.text_of(input), name)
     if output.status == _program.BAD_INPUT:

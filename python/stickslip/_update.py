@@ -2,17 +2,20 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, NamedTuple
+import itertools
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from ._arrays import numbers
+from ._arrays import number, numbers
 from .laws import AtPoints, Law, require_law
 
 STATE_SIZE = 8   # numbers of a state: status, u_n, u_et1, u_et2, mu, internal variable, slip, dissipated energy
+_STATE_SHAPE = (STATE_SIZE,)
 _FLOAT = np.dtype(np.float64)
+
 
 class _Place(NamedTuple):
     """Memory that an update of one point works on, with the C routine's arguments that point to it."""
@@ -26,10 +29,10 @@ class _Place(NamedTuple):
 
 def _new_place(ndir: int) -> _Place:
     memory = (ctypes.c_double * (STATE_SIZE + ndir + ndir**2))()
-    numbers = np.frombuffer(memory)
+    values = np.ctypeslib.as_array(memory)
     last = STATE_SIZE + ndir
     arguments = (STATE_SIZE, memory, ctypes.byref(memory, 8 * STATE_SIZE), ctypes.byref(memory, 8 * last))
-    return _Place(numbers[:STATE_SIZE], numbers[STATE_SIZE:last], numbers[last:].reshape(ndir, ndir).T, ctypes.c_double(),
+    return _Place(values[:STATE_SIZE], values[STATE_SIZE:last], values[last:].reshape(ndir, ndir).T, ctypes.c_double(),
                   arguments)
 
 
@@ -76,11 +79,16 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
         here, traction, tangent, time, arguments = place
         if state is None:
             here[...] = 0.0
-        elif len(state) != STATE_SIZE:
-            raise ValueError(f'state has the length {len(state)}: {STATE_SIZE} is needed')
         else:
-            here[...] = state if type(state) is _ndarray else numbers(state, 'state')
-        time.value = dt
+            if type(state) is not _ndarray:
+                state = numbers(state, 'state')
+            if state.shape != _STATE_SHAPE:
+                raise ValueError(f'state has the shape {state.shape}: {_STATE_SHAPE} is needed')
+            here[...] = state
+        try:
+            time.value = dt
+        except (TypeError, OverflowError):
+            time.value = number(dt, 'dt')
         try:
             size, pointer = law._size, law._pointer
         except AttributeError:
@@ -95,18 +103,20 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
     if du.ndim != 2 or du.shape[1:] not in _PLACES:
         raise ValueError(f'du has the shape {du.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
     require_law(law, own=True)
-    dt = ctypes.c_double(dt)
+    time = ctypes.c_double(number(dt, 'dt'))
     by_point = du.flags.c_contiguous or not du.flags.f_contiguous
-    order = 'C' if by_point else 'F'
+    order: Literal['C', 'F'] = 'C' if by_point else 'F'
     n, ndir = du.shape
     if out is None:
         out = _new_result(n, ndir, order)
     else:
         _check_out(out, order, n, ndir)
+        if any(np.may_share_memory(du, array) for array in out):
+            du = du.copy(order)
     _take_state(out.state, state)
     if not isinstance(law, AtPoints):
         routine = _library.update_points if by_point else _library.update_batch
-        _update_all(routine, np.asarray(du, order=order), dt, law._size, law._pointer, out)
+        _update_all(routine, np.asarray(du, order=order), time, law._size, law._pointer, out)
         return out
     if len(law) != n:
         raise ValueError(f'the law has constants of {len(law)} points, du of {n}')
@@ -114,14 +124,14 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
     if by_point:
         columns = _new_result(n, ndir, 'F')
         columns.state[...] = out.state
-    _update_all(_library.update_batch_props, np.asarray(du, order='F'), dt, len(law.props), law.props.ctypes.data, columns)
+    _update_all(_library.update_batch_props, np.asarray(du, order='F'), time, len(law.props), law.props.ctypes.data, columns)
     if by_point:
         for name in Result._fields:
             getattr(out, name)[...] = getattr(columns, name)
     return out
 
 
-def _new_result(n: int, ndir: int, order: str) -> Result:
+def _new_result(n: int, ndir: int, order: Literal['C', 'F']) -> Result:
     return Result(np.empty((n, ndir), order=order), np.empty((n, ndir, ndir), order=order),
                   np.empty((n, STATE_SIZE), order=order), np.empty(n, np.int32))
 
@@ -137,7 +147,7 @@ def _take_state(new: np.ndarray, state: ArrayLike | None) -> None:
         new[...] = state
 
 
-def _update_all(routine: Any, du: np.ndarray, dt: float, nprops: int, props: Any, out: Result) -> None:
+def _update_all(routine: Any, du: np.ndarray, dt: ctypes.c_double, nprops: int, props: Any, out: Result) -> None:
     """All points by a routine of the library, in place."""
     n, ndir = du.shape
     traction, tangent, state, status = out
@@ -149,20 +159,35 @@ def _update_all(routine: Any, du: np.ndarray, dt: float, nprops: int, props: Any
 
 
 def _check_out(out: Result, order: str, n: int, ndir: int) -> None:
+    _require_result(out)
     shapes = {'traction': (n, ndir), 'tangent': (n, ndir, ndir), 'state': (n, STATE_SIZE), 'status': (n,)}
     for name, shape in shapes.items():
         array = getattr(out, name)
+        if not isinstance(array, np.ndarray):
+            raise TypeError(f'out.{name}: an array is needed, not {array!r}')
         kind = np.int32 if name == 'status' else np.float64
         lies = array.flags.c_contiguous if order == 'C' else array.flags.f_contiguous
         if array.shape != shape or array.dtype != kind or not lies or not array.flags.writeable:
             raise ValueError(f'out.{name}: an array of shape {shape}, {np.dtype(kind)}, in {order} order is needed')
+    for first, second in itertools.combinations(shapes, 2):
+        if np.may_share_memory(getattr(out, first), getattr(out, second)):
+            raise ValueError(f'out.{first} and out.{second} share memory')
+
+
+def _require_result(out: Any) -> None:
+    if not isinstance(out, Result):
+        raise TypeError(f'out: an earlier result is needed, not {out!r}')
 
 
 def _copy_to(out: Result, result: Result) -> Result:
     """The result of one point in the arrays of an earlier one."""
+    _require_result(out)
     for name in ('traction', 'tangent', 'state'):
-        if (shape := np.shape(getattr(out, name))) != getattr(result, name).shape:
-            raise ValueError(f'out.{name} has the shape {shape}: {getattr(result, name).shape} is needed')
+        array, shape = getattr(out, name), getattr(result, name).shape
+        if not isinstance(array, np.ndarray):
+            raise TypeError(f'out.{name}: an array is needed, not {array!r}')
+        if array.shape != shape or array.dtype != _FLOAT or not array.flags.writeable:
+            raise ValueError(f'out.{name}: an array of shape {shape}, float64, that can be written is needed')
     for name in ('traction', 'tangent', 'state'):
         getattr(out, name)[...] = getattr(result, name)
     return out._replace(status=result.status)

@@ -31,6 +31,8 @@ class Law:
 
     number: ClassVar[int]
     name: ClassVar[str]
+    _size: ClassVar[int]   # of props, and a pointer to them: set in each object, and no fields of it
+    _pointer: ClassVar[ctypes.c_void_p]
 
     def __post_init__(self) -> None:
         numbers = [float(self.number)]
@@ -67,6 +69,8 @@ class Law:
             number = float(value)
         except (TypeError, ValueError):
             raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number') from None
+        except OverflowError:
+            raise ValueError(f'{type(self).__name__}: {constant.name} is larger than any number here') from None
         if not math.isfinite(number):
             raise ValueError(f'{type(self).__name__}: {constant.name} = {number}: must be finite')
         return number
@@ -133,6 +137,8 @@ class AtPoints:
         self.__dict__.update(state)
         self.props.flags.writeable = False
 
+    _pointer: ClassVar[ctypes.c_void_p]   # a law has one, points do not
+
     @property
     def _size(self) -> int:
         """What `update` of one point asks for first."""
@@ -184,7 +190,7 @@ def _law_class(number: int) -> type[Law]:
 
 
 #: All laws by their names in the program's input.
-classes: dict[str, type[Law]] = {made.name: made for made in map(_law_class, range(1, _library.law_count() + 1))}
+classes: dict[str, type[Any]] = {made.name: made for made in map(_law_class, range(1, _library.law_count() + 1))}
 globals().update({made.__name__: made for made in classes.values()})
 __all__ += [made.__name__ for made in classes.values()]
 

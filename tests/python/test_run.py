@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 import warnings
 
@@ -120,6 +121,19 @@ class Run(unittest.TestCase):
             drive = {'velocity': kind(pieces['velocity']), 'duration': pieces['duration']}
             np.testing.assert_array_equal(stickslip.run({**SHORT, 'drive': drive}).table, rows)
         self.assertEqual(len(stickslip.run({**SHORT, 'drive': {'velocity': np.array(1.0)}}).table), 21)
+        self.assertEqual(len(stickslip.run(types.MappingProxyType(SHORT)).table), 21)
+        for hidden in (np.ma.masked, np.ma.array([1.0], mask=[True]), np.ma.array([1, 2], mask=[False, True])):
+            with self.assertRaisesRegex(stickslip.InputError, '&drive velocity = .*nan: must be finite'):
+                stickslip.run({**SHORT, 'drive': {'velocity': hidden, 'duration': pieces['duration'][:np.size(hidden)]}})
+        for value, error, words in ((np.timedelta64(3, 's'), TypeError, 'drive.velocity: .* a time'),
+                                    ('a\nb', stickslip.InputError, 'drive.velocity = .*: must be text of one line'),
+                                    ('a\0b', stickslip.InputError, 'drive.velocity = .*: must be text of one line'),
+                                    ('\udcff', stickslip.InputError, 'drive.velocity = .*: must be text of one line')):
+            with self.assertRaisesRegex(error, words):
+                stickslip.run({**SHORT, 'drive': {'velocity': value}})
+        for other in (None, 3, [], b'&drive /'):
+            with self.assertRaisesRegex(TypeError, 'input: the name or the text of a namelist, or a dict'):
+                stickslip.run(other)
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, 'drive.csv')
             path.write_text('time,velocity\n0,1\n1,1\n')
@@ -130,6 +144,10 @@ class Run(unittest.TestCase):
                                ({'drive': {'velocity': 1.0, 'Velocity': 2.0}}, 'key velocity: given twice')):
             with self.assertRaisesRegex(stickslip.InputError, words):
                 stickslip.run({**SHORT, **changes})
+        for name in ('', '!', 'velocity = 2 /\n&drive', 'a b', 'velo\0city'):   # what is written would say something else
+            for changes in ({'drive': {'velocity': 1.0, name: 2.0}}, {name: {}}):
+                with self.assertRaisesRegex(stickslip.InputError, 'must be a name'):
+                    stickslip.run({**SHORT, **changes})
         for changes in ({3: {}}, {'drive': {3: 1.0}}):
             with self.assertRaisesRegex(TypeError, '3: a name is needed'):
                 stickslip.run({**SHORT, **changes})

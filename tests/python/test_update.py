@@ -157,10 +157,48 @@ class Update(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, 'the same at all points'):
             stickslip.rates(many, points, np.zeros((3, 8)))
         for du in (one, many):
-            with self.assertRaisesRegex(TypeError, 'real number'):
-                stickslip.update(du, 'soon', law)
-        with self.assertRaisesRegex(ValueError, r'out.traction has the shape \(3, 2\): \(2,\)'):
-            stickslip.update(one, 0.1, law, out=stickslip.update(many, 0.1, law))
+            for dt in ('soon', '0.1', None, [0.1], np.array([0.1, 0.1]), 1j):
+                with self.assertRaisesRegex(TypeError, '(?s)dt = .*: a number is needed'):
+                    stickslip.update(du, dt, law)
+            with self.assertRaisesRegex(ValueError, 'dt: must be finite'):
+                stickslip.update(du, 10**400, law)
+            for state in (3, 'rest', [0.0, [1.0, 2.0]], '12345678', {'mu': 0.5}):
+                with self.assertRaisesRegex((TypeError, ValueError), '^state'):
+                    stickslip.update(du, 0.1, law, state)
+        with self.assertRaisesRegex(ValueError, '^du: numbers in rows of one length'):
+            stickslip.update([[0.0, 1.0], [2.0]], 0.1, law)
+        with self.assertRaisesRegex(TypeError, 'damping = .*: a number is needed'):
+            stickslip.slip_rates(1.0, 1.0, LAWS['rate_and_state'], 1.0, damping=[1.0, 2.0])
+        with self.assertRaisesRegex(ValueError, 'Coulomb: alpha_n is larger than any number'):
+            stickslip.laws.Coulomb(alpha_n=10**400, alpha_t=1, mu=0.4)
+
+    def test_results_to_write_again_are_results_of_that_shape(self):
+        law, one, many = LAWS['coulomb'], np.array([-0.01, 0.1]), motions(3, 2)
+        for du, other in ((one, many), (many, one)):
+            good = stickslip.update(du, 0.1, law)
+            for out, words in ((stickslip.update(other, 0.1, law), 'out.traction: an array of shape'), (tuple(good), 'out: an earlier'),
+                               (good._replace(state=good.state.astype(int)), 'out.state: an array of shape .* float64'),
+                               (good._replace(tangent=good.tangent.tolist()), 'out.tangent: an array is needed')):
+                with self.assertRaisesRegex((TypeError, ValueError), words):
+                    stickslip.update(du, 0.1, law, out=out)
+
+    def test_arrays_that_share_memory_give_no_wrong_numbers(self):
+        for law in (LAWS['coulomb'], LAWS['coulomb'].at_points(mu=[0.1, 0.2, 0.3])):
+            plain = stickslip.update(motions(3, 2), 0.1, law)
+            memory = np.zeros(60)
+            shared = plain._replace(traction=memory[:6].reshape(3, 2), tangent=memory[4:16].reshape(3, 2, 2))
+            with self.assertRaisesRegex(ValueError, 'out.traction and out.tangent share memory'):
+                stickslip.update(motions(3, 2), 0.1, law, out=shared)
+            for name, size in (('traction', 6), ('tangent', 12), ('state', 24)):   # of the result, where the increments are
+                for first in (0, 1, 3):
+                    memory = np.zeros(60)
+                    du = memory[first:first + 6].reshape(3, 2)
+                    du[...] = motions(3, 2)
+                    out = stickslip.update(motions(3, 2), 0.1, law)
+                    out = out._replace(**{name: memory[:size].reshape(getattr(out, name).shape)})
+                    found = stickslip.update(du, 0.1, law, out=out)
+                    for array, right in zip(found, plain):
+                        np.testing.assert_array_equal(array, right)
 
     def test_threads_do_not_meet(self):
         law, du = LAWS['subloading'], motions(5000, 3)
