@@ -2,7 +2,7 @@
 !> the program leaves that script with the names, units and numbers of the case before it, so that
 !> it can be changed and run again.
 module picture
-    use, intrinsic :: iso_fortran_env, only : dp => real64
+    use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use child_process, only : run_command
     use embedded_texts, only : get_text
     use number_text, only : short_text, whole_text
@@ -102,8 +102,32 @@ contains
                 problem = 'gnuplot was stopped on ' // stem // '.gp, after a minute or by a signal'
             else if (.not. succeeded) then
                 problem = 'gnuplot failed on ' // stem // '.gp: no picture is drawn'
+            else if (.not. is_whole(directory // '/' // stem // '.svg')) then
+                problem = 'gnuplot could not write the whole picture of ' // stem &
+                    // '.gp (disk full?)'
             end if
         end if
     end subroutine draw
+
+    !> Is there the end of a picture, the last that a script writes? gnuplot takes a full disk for
+    !> success.
+    function is_whole(name) result(yes)
+        character(len=*), intent(in) :: name   !! of an SVG file
+        logical :: yes
+        integer, parameter :: most = 16
+        character(len=most) :: ends
+        integer(int64) :: bytes
+        integer :: unit, status
+
+        yes = .false.
+        inquire (file=name, size=bytes)
+        if (bytes < most) return
+        open (newunit=unit, file=name, access='stream', form='unformatted', status='old', &
+            action='read', iostat=status)
+        if (status /= 0) return
+        read (unit, pos=bytes - most + 1, iostat=status) ends
+        close (unit)
+        yes = status == 0 .and. index(ends, '</svg>') > 0
+    end function is_whole
 
 end module picture

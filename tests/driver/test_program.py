@@ -184,6 +184,19 @@ class GoodInput(Program):
         self.assertIn('gnuplot is not installed', result.stderr)
         self.assertTrue((self.folder / 'case_out/case.gp').exists())
 
+    def test_half_a_picture_is_told(self):
+        tool = self.folder / 'tools/gnuplot'
+        tool.parent.mkdir()
+        (self.folder / 'case.nml').write_text(namelist())
+        whole = 'echo "<svg> a picture </svg>" >case.svg'
+        for drawing, told in ((whole, False), (f'{whole}; truncate -s -8 case.svg', True), (':', True)):
+            tool.write_text(f'#!/bin/sh\n{drawing}\n')
+            tool.chmod(0o755)
+            shutil.rmtree(self.folder / 'case_out', ignore_errors=True)
+            result = self.run_program('run', 'case.nml', env={**os.environ, 'PATH': f"{tool.parent}:{os.environ['PATH']}"})
+            self.assertEqual(result.returncode, 0)
+            self.assertEqual('could not write the whole picture' in result.stderr, told, drawing)
+
     def test_check_says_that_good_input_is_valid_and_runs_nothing(self):
         result = self.run_text(namelist(), verb='check')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
