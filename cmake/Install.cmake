@@ -29,11 +29,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/stickslip-config.cmake
 get_target_property(linker stickslip_static LINKER_LANGUAGE)
 if(linker STREQUAL "Fortran")   # and so are the compiler's own libraries, but for C's
     list(APPEND libraries_behind ${CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES})
-    list(REMOVE_ITEM libraries_behind gcc gcc_s c m)
+    list(REMOVE_ITEM libraries_behind gcc gcc_s c m -lm)
     list(REMOVE_DUPLICATES libraries_behind)
-    list(APPEND libraries_behind m)   # what the others call
+    list(APPEND libraries_behind -lm)   # what the others call
 endif()
-list(TRANSFORM libraries_behind PREPEND -l REGEX "^[^/]")
+list(TRANSFORM libraries_behind PREPEND -l REGEX "^[^-/]")
 list(JOIN libraries_behind " " libraries_behind)
 # A fully static program of gfortran that uses OpenMP ends with a call of this function, which its own
 # run-time library refers to weakly, and so leaves out.
