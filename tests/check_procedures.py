@@ -76,6 +76,7 @@ EXCEPTIONS = {
     ('src/adapters/friction_host.f90', 'host_tangential'): ADAPTER,
     ('src/adapters/friction_host.f90', 'interface_update'): ADAPTER,
     ('src/adapters/friction_layer.f90', 'layer_update'): ADAPTER,
+    ('src/adapters/friction_layer.f90', 'perturb_layer'): ADAPTER,
     ('tests/unit/test_laws_abaqus_explicit.pf', 'compare_vfric'): ADAPTER,
     ('driver/model/contact_forces.f90', 'friction_forces'): WORK,
     ('driver/model/contact_forces.f90', 'forces_on_part'): WORK,

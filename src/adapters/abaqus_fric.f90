@@ -45,8 +45,8 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
         else
             if (nfdir == 2) call rotate_tangential(drot, state)
             ! a displacement without its stress: open since, although LM does not say so
-            if (all(abs(tau) <= 0.0_wp) .and. stored(state) > 0.0_wp) call forget_elastic(props, &
-                state, status)
+            if (all(abs(tau) <= 0.0_wp) .and. any(abs(state(statev_u_et:statev_u_et + 1)) &
+                > 0.0_wp)) call forget_elastic(props, state, status)
             start = state
             call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
         end if
@@ -68,15 +68,5 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     sed = elastic_energy(props, 0.0_wp, state(statev_u_et), second)
     sfd = state(statev_dissipation) - start(statev_dissipation)
     ddtddt = 0.0_wp
-
-contains
-
-    !> Size of the elastic displacement.
-    pure function stored(state)
-        real(wp), intent(in) :: state(statev_size)
-        real(wp) :: stored
-
-        stored = abs(state(statev_u_et)) + abs(state(statev_u_et + 1))
-    end function stored
 
 end subroutine stickslip_fric

@@ -16,11 +16,10 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, &
     jstep, kinc)
     use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, &
-        stdb_abqerr, usable
+        stdb_abqerr
     use friction_kinds, only : wp
-    use friction_layer, only : layer_update
-    use friction_mod, only : friction_bad_increment, friction_bad_size, &
-        friction_no_convergence, statev_size
+    use friction_layer, only : layer_update, perturb_layer
+    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! direct, shear and all components
     integer, intent(in) :: nstatv, nprops, noel, npt, layer, kspt, jstep(4), kinc
@@ -37,7 +36,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     integer, parameter :: large_displacements = 1   ! in jstep(3)
     integer, parameter :: perturbation = 1          ! in jstep(4)
     real(wp), parameter :: largest_tilt = 1.0e-3_wp
-    real(wp) :: state(statev_size)
+    real(wp) :: state(statev_size), change(ntens)
     integer :: status
 
     if (ndi == 3 .and. jstep(3) == large_displacements) then
@@ -52,7 +51,9 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
         if (jstep(4) == perturbation) then
-            call perturb_layer()
+            call perturb_layer(ndi, nshr, nprops, props, dstran, state, stress, ddsdde, change, &
+                status)
+            if (status >= 0) stress = stress + change
         else
             if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
             call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &
@@ -67,25 +68,6 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     if (status >= 0) statev(1:statev_size) = state
 
 contains
-
-    !> The stiffness of the base state, which is elastic as nothing slides without time, and the
-    !> stress that follows from it.
-    subroutine perturb_layer()
-        real(wp) :: carried(ntens), still(ntens), energies(2)
-        integer :: j
-
-        status = friction_bad_increment
-        if (.not. all(usable(dstran))) return
-        carried = stress
-        still = 0.0_wp
-        call layer_update(ndi, nshr, nprops, props, still, 0.0_wp, state, carried, ddsdde, &
-            energies(1), energies(2), status)
-        if (status < 0) return
-        state = statev(1:statev_size)
-        do j = 1, ntens
-            stress = stress + ddsdde(:, j) * dstran(j)
-        end do
-    end subroutine perturb_layer
 
     !> How far the fibres of the layer's plane have turned towards its normal.
     pure function tilt()

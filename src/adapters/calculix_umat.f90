@@ -20,7 +20,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
     use friction_finite_layer, only : finite_layer_update
-    use friction_layer, only : first_friction_prop, layer_shear_stiffness, layer_update
+    use friction_layer, only : first_friction_prop, layer_shear_stiffness, &
+        layer_update, perturb_layer
     use friction_mod, only : friction_bad_size, friction_is_orthotropic, friction_no_convergence, &
         statev_size
     implicit none
@@ -41,7 +42,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     character(len=*), parameter :: rotated = '@ABAQUSNL'
     integer, parameter :: large_displacements = 1     ! in jstep(3)
     integer, parameter :: perturbation = 1            ! in jstep(4)
-    real(wp) :: state(statev_size), start(6), increment(6), dt, elastic, dissipated
+    real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, dissipated
     integer :: status
     logical :: perturbed
 
@@ -66,11 +67,14 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         if (jstep(3) == large_displacements) then
             call finite_layer_update(nprops, props, start, increment, dt, state, stress, ddsdde, &
                 status)
+        else if (perturbed) then
+            call perturb_layer(ndi, nshr, nprops, props, dstran, state, stress, ddsdde, change, &
+                status)
+            if (status >= 0) stress = change
         else
             call layer_update(ndi, nshr, nprops, props, increment, dt, state, stress, ddsdde, &
                 elastic, dissipated, status)
             if (status >= 0) ddsdde(5:6, 3) = 0.0_wp
-            if (status >= 0 .and. perturbed) call linear_stress()
         end if
         if (.not. perturbed) statev(1:statev_size) = state
     end if
@@ -81,15 +85,6 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)
 
 contains
-
-    !> The stress that a strain makes about the base state of a perturbation step.
-    subroutine linear_stress()
-        integer :: i
-
-        do i = 1, 6
-            stress(i) = sum(ddsdde(i, :) * dstran)
-        end do
-    end subroutine linear_stress
 
     !> Friction that depends on the direction has an unsymmetric stiffness also within the surface.
     !> Of its symmetric part alone Newton's iterations go round in circles; with a small share of

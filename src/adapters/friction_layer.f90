@@ -10,7 +10,7 @@ module friction_layer
     implicit none
     private
 
-    public :: layer_constants, layer_shear_stiffness, layer_update, read_layer
+    public :: layer_constants, layer_shear_stiffness, layer_update, perturb_layer, read_layer
 
     !> Places of the layer's own constants; those of the friction routine follow.
     integer, parameter :: prop_thickness = 1, prop_modulus = 2
@@ -101,6 +101,36 @@ contains
             statev(statev_u_et), statev(statev_u_et + 1)) / layer%thickness
         spd = statev(statev_dissipation) / layer%thickness
     end subroutine layer_update
+
+    !> A linear perturbation step: the stiffness of the base state, which is elastic as nothing
+    !> slides without time, and the stress that a strain makes about it. State and stress stay.
+    pure subroutine perturb_layer(ndi, nshr, nprops, props, strain, statev, stress, ddsdde, &
+        change, status)
+        integer, intent(in) :: ndi, nshr            !! as in `layer_update`, and so on
+        integer, intent(in) :: nprops
+        real(wp), intent(in) :: props(nprops)
+        real(wp), intent(in) :: strain(ndi + nshr)  !! from the base state, engineering shear [-]
+        real(wp), intent(in) :: statev(statev_size)
+        real(wp), intent(in) :: stress(ndi + nshr)  !! of the base state [F/L^2]
+        real(wp), intent(inout) :: ddsdde(ndi + nshr, ndi + nshr)
+        real(wp), intent(inout) :: change(ndi + nshr)   !! out: of the stress [F/L^2]
+        integer, intent(out) :: status
+        real(wp) :: still(ndi + nshr), carried(ndi + nshr), state(statev_size), sse, spd
+        integer :: j
+
+        status = friction_bad_increment
+        if (.not. all(usable(strain))) return
+        still = 0.0_wp
+        carried = stress
+        state = statev
+        call layer_update(ndi, nshr, nprops, props, still, 0.0_wp, state, carried, ddsdde, sse, &
+            spd, status)
+        if (status < 0) return
+        change = 0.0_wp
+        do j = 1, ndi + nshr
+            change = change + ddsdde(:, j) * strain(j)
+        end do
+    end subroutine perturb_layer
 
     !> Elastic stresses in the plane of the layer; everything else of the stiffness is set to zero.
     pure subroutine extend_in_plane(at, ntens, modulus, dstran, stress, ddsdde, energy)
