@@ -37,10 +37,11 @@ module friction_lane_block
     !> near to a choice, as a share of them, is left to that.
     real(wp), parameter, public :: unsure = 0.25_wp * verge
 
-    !> Laws with lanes.
+    !> Laws with lanes. Those that share lanes follow each other (module friction_law_lanes), and
+    !> those of the subloading surface come first.
     integer, parameter, public :: lane_none = 0, lane_subloading = 1, lane_exact_rate = 2, &
         lane_cotangent = 3, lane_reciprocal = 4, lane_coulomb = 5, lane_static_kinetic = 6, &
-        lane_ageing = 7, lane_slip_law = 8, lane_slip_weakening = 9, lane_healing = 10, &
+        lane_slip_weakening = 7, lane_healing = 8, lane_ageing = 9, lane_slip_law = 10, &
         lane_pressed_ageing = 11, lane_pressed_slip_law = 12, lane_flash_heating = 13
 
     !> Options of laws.

@@ -21,6 +21,11 @@ module friction_law_lanes
     implicit none
     private
 
+    !> Families of kinds that share their lanes: the only place that says which belong together.
+    integer, parameter :: first_general = lane_cotangent, last_general = lane_reciprocal, &
+        first_weakening = lane_slip_weakening, last_weakening = lane_healing, &
+        first_rate_state = lane_ageing, last_rate_state = lane_flash_heating
+
     public :: counts_pressure_before, find_coefficients, follows_path, follows_rate, mobilises, &
         rest_law, slide_law, state_of_law
 
@@ -33,7 +38,7 @@ contains
         type(rest_block), intent(inout) :: block
 
         select case (task%kind)
-        case (lane_subloading, lane_cotangent, lane_reciprocal)
+        case (lane_subloading, first_general:last_general)
             call rest_subloading(constants, task%dt, block)
         case (lane_exact_rate)
             call rest_subloading_exact(constants, task%dt, block)
@@ -41,10 +46,9 @@ contains
             call rest_coulomb(constants, block)
         case (lane_static_kinetic)
             call rest_static_kinetic(constants, block)
-        case (lane_ageing, lane_slip_law, lane_pressed_ageing, lane_pressed_slip_law, &
-            lane_flash_heating)
+        case (first_rate_state:last_rate_state)
             call rest_rate_state(task%kind, constants, task%dt, block)
-        case (lane_slip_weakening, lane_healing)
+        case (first_weakening:last_weakening)
             call rest_slip_weakening(constants, task%kind == lane_healing, task%dt, block)
         case default
             block%valid = -1.0_wp   ! no lanes
@@ -62,16 +66,15 @@ contains
             call slide_subloading(constants, task%dt, block)
         case (lane_exact_rate)
             call slide_subloading_exact(constants, task%dt, block)
-        case (lane_cotangent, lane_reciprocal)
+        case (first_general:last_general)
             call slide_subloading_general(constants, task%kind == lane_cotangent, task%dt, block)
         case (lane_coulomb)
             call slide_coulomb(constants, block)
         case (lane_static_kinetic)
             call slide_static_kinetic(constants, task%dt, block)
-        case (lane_ageing, lane_slip_law, lane_pressed_ageing, lane_pressed_slip_law, &
-            lane_flash_heating)
+        case (first_rate_state:last_rate_state)
             call slide_rate_state(task%kind, constants, task%dt, block)
-        case (lane_slip_weakening, lane_healing)
+        case (first_weakening:last_weakening)
             call slide_slip_weakening(constants, task%kind == lane_healing, task%dt, block)
         case default
             block%left = 1.0_wp
@@ -87,19 +90,18 @@ contains
         select case (task%kind)
         case (lane_subloading)
             call state_subloading(constants, task%dt, block)
-        case (lane_cotangent, lane_reciprocal)
+        case (first_general:last_general)
             call state_subloading_general(constants, task%kind == lane_cotangent, task%dt, block)
         case (lane_static_kinetic)
             call state_static_kinetic(constants, task%dt, block)
-        case (lane_ageing, lane_slip_law, lane_pressed_ageing, lane_pressed_slip_law, &
-            lane_flash_heating)
+        case (first_rate_state:last_rate_state)
             call state_rate_state(task%kind, constants, task%dt, block)
-        case (lane_slip_weakening, lane_healing)
+        case (first_weakening:last_weakening)
             call state_slip_weakening(constants, task%kind == lane_healing, task%dt, block)
-        case (lane_exact_rate)
-            block%left = 1.0_wp   ! one by one
+        case (lane_coulomb)
+            continue   ! has no variables
         case default
-            continue   ! Coulomb's law has no variables
+            block%left = 1.0_wp   ! one by one
         end select
     end subroutine state_of_law
 
@@ -121,8 +123,7 @@ contains
         type(block_task), intent(in) :: task
         logical :: mobilises
 
-        mobilises = any(task%kind == [lane_subloading, lane_exact_rate, lane_cotangent, &
-            lane_reciprocal])
+        mobilises = task%kind >= lane_subloading .and. task%kind <= last_general
     end function mobilises
 
     !> Does the coefficient in the state follow from the slip rate?
@@ -130,8 +131,7 @@ contains
         type(block_task), intent(in) :: task
         logical :: follows_rate
 
-        follows_rate = any(task%kind == [lane_ageing, lane_slip_law, lane_pressed_ageing, &
-            lane_pressed_slip_law, lane_flash_heating])
+        follows_rate = task%kind >= first_rate_state .and. task%kind <= last_rate_state
     end function follows_rate
 
     !> Does a law follow the path within an increment (`follows_path` of the law)?
