@@ -46,18 +46,20 @@ contains
 
     !> Takes in a step; returns the events that have ended before it, in the order of their
     !> blocks.
-    pure subroutine look(self, old, new, ended)
+    pure subroutine look(self, old, new, most_slip, ended)
         class(chain_finder), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
+        real(dp), intent(in) :: most_slip   !! of a block in the step [L]
         type(chain_event), allocatable, intent(out) :: ended(:)
         real(dp) :: least   !! slip in the step that counts [L]
         real(dp) :: slip    !! of a block in the step [L]
-        integer :: i, k
+        integer :: i, k, slipping
 
         k = 1
         self%events(:self%count)%under_way = .false.
         least = self%slip_rate * (new%time - old%time)
-        do i = 1, size(new%x)
+        slipping = merge(size(new%x), 0, most_slip > least)   ! none: a chain is long
+        do i = 1, slipping
             slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
             if (slip > least) call take_in(self, chain_event(old%time, new%time, i, i, slip, &
                 new%spring(i) - old%spring(i), slip / (new%time - old%time)), k)

@@ -44,7 +44,7 @@ contains
         type(chain_event), allocatable :: ended(:)
 
         if (.not. self%many) return
-        call self%finder%look(old, new, ended)
+        call self%finder%look(old, new, news%sums%most_slip, ended)
         if (size(ended) == 0) return
         self%ended = self%ended + size(ended)
         self%largest_moment = max(self%largest_moment, self%area * maxval(ended%slip))

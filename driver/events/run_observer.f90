@@ -4,6 +4,7 @@ module run_observer
     use chain_events, only : chain_event
     use slider_system, only : slider_state
     use slip_events, only : slip_event
+    use step_sums, only : block_sums
     implicit none
     private
 
@@ -15,6 +16,7 @@ module run_observer
         integer :: steps = 0            !! taken so far, this one included
         logical :: complete = .true.    !! not a part of a fixed step
         logical :: last = .false.       !! no step follows: the end has been reached
+        type(block_sums) :: sums        !! over the blocks in this step
         type(slip_event), allocatable :: slip_events(:)     !! known to have ended in this step
         type(chain_event), allocatable :: chain_events(:)   !! likewise, of a chain's blocks
         logical :: cut_short = .false.  !! these chain events had not ended when the run did

@@ -6,7 +6,7 @@ module simulation
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, load_factors
-    use energies, only : energy_balance, jumped, let_go, take_stock
+    use energies, only : energy_balance, take_stock
     use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
         statev_u_et
     use initial_states, only : displace, initial_state, place
@@ -94,9 +94,9 @@ contains
             end if
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
             live%taken = live%taken + 1
-            live%let_go = live%let_go + let_go(live%steps%system, live%state, live%other)
-            if (.not. live%steps%in_rates) live%let_go = live%let_go + jumped(live%steps%system, &
-                live%state, live%other)
+            news%sums = live%steps%sums(live%state, live%other)
+            live%let_go = live%let_go + news%sums%let_go
+            if (.not. live%steps%in_rates) live%let_go = live%let_go + news%sums%jumped
             live%most_work = max(live%most_work, abs(live%other%drive_work))
             call swap_states(live%state, live%other)
             news%complete = report%complete

@@ -3,7 +3,6 @@
 module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : statev_slip
     use law_facts, only : typical_strength
     use loading_programme, only : programme
     use piece_measures, only : friction_range
@@ -12,6 +11,7 @@ module slip_observer
     use run_settings, only : settings
     use slider_system, only : slider_state
     use slip_events, only : event_finder, moment, slip_event
+    use step_sums, only : block_sums
     implicit none
     private
 
@@ -74,14 +74,14 @@ contains
         integer :: i, k
 
         i = self%drive%piece(old%time)
-        call self%finder%follow(seen(self, old, i), seen(self, new, i), news%last, &
-            news%slip_events)
+        call self%finder%follow(seen(self, old, news%sums, 1, i), seen(self, new, news%sums, 2, &
+            i), news%last, news%slip_events)
         do k = 1, size(news%slip_events)
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))
             self%onsets = [self%onsets, news%slip_events(k)%onset]
         end do
-        self%peak_velocity = max(self%peak_velocity, maxval(abs(new%v)))
+        self%peak_velocity = max(self%peak_velocity, news%sums%fastest)
         if (self%drive%listed > 1) call self%measure(old, new)
     end subroutine see
 
@@ -101,25 +101,19 @@ contains
     end subroutine measure
 
     !> What the finder looks at, as means over the blocks.
-    pure function seen(self, state, i) result(now)
+    pure function seen(self, state, sums, k, i) result(now)
         class(slip_watch), intent(in) :: self
         type(slider_state), intent(in) :: state
+        type(block_sums), intent(in) :: sums   !! over the blocks in a step
+        integer, intent(in) :: k   !! 1: the state at its start, 2: at its end
         integer, intent(in) :: i   !! piece of the programme
         type(moment) :: now
-        real(dp) :: velocity, spring, slip   ! sums, then means over the blocks
-        integer :: n, k
+        real(dp) :: velocity       !! mean over the blocks [L/T]
+        integer :: n
 
         n = size(state%x)
-        velocity = 0.0_dp
-        spring = 0.0_dp
-        slip = 0.0_dp
-        do k = 1, n
-            velocity = velocity + state%v(k)
-            spring = spring + state%spring(k)
-            slip = slip + state%statev(k, statev_slip)
-        end do
-        velocity = velocity / n
-        now = moment(state%time, spring / n, slip / n, velocity, &
+        velocity = sums%velocity(k) / n
+        now = moment(state%time, sums%spring(k) / n, sums%slip(k) / n, velocity, &
             self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive, &
             self%area * self%coefficient * max(0.0_dp, self%drive%normal_traction(state%time, i)))
     end function seen

@@ -1,13 +1,14 @@
 !> Where the work of the drive goes: held by springs, contacts and motion, or lost.
 module energies
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_slip, &
-        statev_status, statev_u_et, statev_u_n
+    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_u_et, &
+        statev_u_n
     use slider_system, only : slider, slider_state
+    use step_sums, only : block_sums
     implicit none
     private
 
-    public :: account, energy_balance, jumped, let_go, take_stock
+    public :: account, energy_balance, take_stock
 
     !> Where the work of the drive has gone [F L].
     type :: energy_balance
@@ -24,21 +25,14 @@ contains
 
     !> Adds the work of the drive and the energy lost to the dampers from `old` to `new`, by the
     !> mean forces over the step.
-    pure subroutine account(system, old, new)
+    pure subroutine account(system, sums, old, new)
         type(slider), intent(in) :: system
+        type(block_sums), intent(in) :: sums   !! over the blocks in this step
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
-        real(dp) :: pull, drag   ! sums over the blocks [F], [L^2/T]
-        integer :: i
 
-        pull = 0.0_dp
-        drag = 0.0_dp
-        do i = 1, size(new%x)
-            pull = pull + (old%spring(i) + new%spring(i))
-            drag = drag + (old%v(i) + new%v(i)) * (new%x(i) - old%x(i))
-        end do
-        new%drive_work = old%drive_work + 0.5_dp * pull * (new%drive - old%drive)
-        new%damped = old%damped + 0.5_dp * system%damping * drag
+        new%drive_work = old%drive_work + 0.5_dp * sum(sums%spring) * (new%drive - old%drive)
+        new%damped = old%damped + 0.5_dp * system%damping * sums%drag
         if (.not. system%across%free()) return
         associate (du_n => new%statev(1, statev_u_n) - old%statev(1, statev_u_n))
             new%drive_work = new%drive_work - 0.5_dp * system%area * (old%load + new%load) * du_n
@@ -91,58 +85,6 @@ contains
         energy%contact = energy%contact + 0.5_dp * system%area &
             * system%carried_pressure(state%statev(1, statev_u_n))**2 / system%props(prop_alpha_n)
     end subroutine take_stock_across
-
-    !> Energy that contact springs still held when their contacts opened: nothing gets it back. Nor
-    !> what the drive spring of a block without mass and damping held: that follows at once.
-    pure function let_go(system, old, new) result(energy)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old, new
-        real(dp) :: energy   !! [F L]
-        real(dp), parameter :: open = 3.0_dp
-        real(dp) :: alpha   !! [F/L^3]
-        integer :: i
-
-        energy = 0.0_dp
-        alpha = system%props(prop_alpha_t)
-        do i = 1, size(new%x)
-            if (new%statev(i, statev_status) < open) cycle
-            if (allocated(system%constants)) alpha = system%constants(i, prop_alpha_t)
-            energy = energy + 0.5_dp * system%area * alpha * old%statev(i, statev_u_et)**2
-            if (system%mass > 0.0_dp .or. system%damping > 0.0_dp) cycle
-            energy = energy + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / system%stiffness
-        end do
-    end function let_go
-
-    !> What contact springs give up at once where friction falls, and with them the drive spring of
-    !> a block without mass and damping: of it the states of friction count too little, however
-    !> short the step, since they take its slip under the traction at its end. What a block gains or
-    !> loses by its way in the step is no part of it: an error of the step.
-    pure function jumped(system, old, new) result(energy)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old, new   !! start and end of a step
-        real(dp) :: energy   !! [F L]
-        real(dp) :: alpha    !! [F/L^3]
-        real(dp) :: back     !! way that the contact spring goes back [L]
-        real(dp) :: slip     !! in the step [L]
-        real(dp) :: counted  !! dissipated beyond slip under the last traction [F L]
-        real(dp) :: given    !! [F L]
-        integer :: i
-
-        energy = 0.0_dp
-        alpha = system%props(prop_alpha_t)
-        do i = 1, size(new%x)
-            slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
-            back = abs(old%statev(i, statev_u_et)) - abs(new%statev(i, statev_u_et))
-            if (.not. (slip > 0.0_dp .and. back > 0.0_dp)) cycle
-            if (allocated(system%constants)) alpha = system%constants(i, prop_alpha_t)
-            given = 0.5_dp * system%area * alpha * back**2
-            if (.not. (system%mass > 0.0_dp .or. system%damping > 0.0_dp)) given = given &
-                + 0.5_dp * (system%area * alpha * back)**2 / system%stiffness
-            counted = system%area * (new%statev(i, statev_dissipation) - old%statev(i, &
-                statev_dissipation)) - abs(new%friction(i)) * slip
-            energy = energy + max(0.0_dp, given - counted)
-        end do
-    end function jumped
 
     !> Held by the springs, the contact and the motion together.
     pure function held(self) result(total)

@@ -64,9 +64,11 @@ contains
         state%v = values%velocity
         mu = values%mu
         do i = 1, size(mu)
-            props = system%props_of(i)
+            if (i == 1 .or. allocated(system%constants)) then   ! else they are those of the first
+                props = system%props_of(i)
+                law = friction_facts(props)
+            end if
             alpha_t(i) = props(prop_alpha_t)
-            law = friction_facts(props)
             if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
         end do
         state%statev(:, statev_mu) = mu

@@ -7,6 +7,7 @@ module abstract_integrator
     use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
+    use step_sums, only : block_sums, sum_blocks
     implicit none
     private
 
@@ -46,7 +47,7 @@ module abstract_integrator
         procedure(take_step), deferred :: step
         procedure(keep), deferred :: visit
         procedure(explain), deferred :: why_stopped
-        procedure :: finished
+        procedure :: finished, sums
         procedure, non_overridable :: take_run, visit_counts, count_iterations, explain_status
     end type integrator
 
@@ -115,6 +116,15 @@ contains
 
         yes = state%time >= self%t_end
     end function finished
+
+    !> Over the blocks, for the step that was taken last. An integrator may have them already.
+    pure function sums(self, old, new) result(over_step)
+        class(integrator), intent(in) :: self
+        type(slider_state), intent(in) :: old, new   !! of this step
+        type(block_sums) :: over_step
+
+        over_step = sum_blocks(self%system, old, new, 1, size(new%x))
+    end function sums
 
     !> The part of `visit` that all integrators share.
     subroutine visit_counts(self, file)

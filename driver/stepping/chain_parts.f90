@@ -13,6 +13,7 @@ module chain_parts
     use run_settings, only : settings
     use slider_system, only : ends_fixed, ends_fixed_free, ends_free, ends_free_fixed, &
         ends_periodic, slider, slider_state
+    use step_sums, only : block_sums, sum_blocks
     use two_way_steps, only : two_way_newmark
     use time_integrator, only : generalised_alpha, newmark
     !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
@@ -39,6 +40,7 @@ module chain_parts
     !> How the step of a part went.
     type :: part_report
         type(step_report) :: step
+        type(block_sums) :: sums         !! over its blocks
         real(dp) :: beyond(2) = 0.0_dp   !! displacements that it found for its neighbours' next
                                          !! blocks [L]
     end type part_report
@@ -52,11 +54,12 @@ module chain_parts
 
     !> Of one system: its step is one of Newmark's, taken in parts.
     type, extends(newmark) :: parted_chain
-        integer :: split = 0   !! steps that were taken in parts
+        integer :: split = 0                 !! steps that were taken in parts
+        integer, private :: parts = 0        !! of the last one; 0: it was taken at once
         type(part_workspace), allocatable, private :: workspaces(:)
         type(part_report), allocatable, private :: reports(:)
     contains
-        procedure :: step
+        procedure :: step, sums
     end type parted_chain
 
 contains
@@ -98,6 +101,7 @@ contains
 
         solved = .false.
         iterations = 0
+        self%parts = 0
         this = chain_step(drive, normal, dt, margin=huge(this%margin), parts=0)
         if (size(old%x) > most_at_once) this%margin = margin_of(self, system, dt)
         if (this%margin <= widest_margin) then
@@ -106,6 +110,7 @@ contains
             if (report%status >= 0) solved = seams_hold(self, system, this, new)
             if (solved) then
                 self%split = self%split + 1
+                self%parts = this%parts
                 return
             end if
             iterations = report%iterations
@@ -113,6 +118,23 @@ contains
         call self%newmark%step(system, drive, normal, dt, old, new, report, guess)
         report%iterations = report%iterations + iterations
     end subroutine step
+
+    !> Part after part, so that they do not depend on how many threads there were.
+    pure function sums(self, system, old, new) result(over_step)
+        class(parted_chain), intent(in) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old, new
+        type(block_sums) :: over_step
+        integer :: i
+
+        if (self%parts == 0) then
+            over_step = self%newmark%sums(system, old, new)
+        else
+            do i = 1, self%parts
+                call over_step%add(self%reports(i)%sums)
+            end do
+        end if
+    end function sums
 
     !> Blocks after which a displacement at a wall is lost in round-off. From block to block it
     !> falls by r, where k (1/r - 2 + r) = d: k of the coupling, d of all that holds a block in
@@ -241,8 +263,8 @@ contains
 
         n = size(old%x)
         call place_part(this, system%ends == ends_periodic, n, i, first, last, start)
-        call put_walls(w, system, this, old, start, guess)
         call fetch_window(w, system, this, old, start, guess)
+        call put_walls(w, system, this, old, start, guess)   ! beside what is in cache now
         call w%method%step(w%system, this%drive, this%normal, this%dt, w%old, w%new, report%step, &
             w%guess)
         if (report%step%status < 0) return
@@ -255,6 +277,7 @@ contains
             do k = 1, size(new%statev, 2)
                 new%statev(first:last, k) = w%new%statev(a:b, k)
             end do
+            report%sums = sum_blocks(w%system, w%old, w%new, a, b)
             report%beyond = [w%new%x(max(1, a - 1)), w%new%x(min(width, b + 1))]
         end associate
     end subroutine solve_part
@@ -323,10 +346,9 @@ contains
         call fetch(old%x, start, w%old%x)
         call fetch(old%v, start, w%old%v)
         call fetch(old%a, start, w%old%a)
-        if (abs(w%method%alpha_f) > 0.0_dp .or. abs(w%method%alpha_m) > 0.0_dp) then
-            call fetch(old%spring, start, w%old%spring)   ! Newmark's method needs neither
-            call fetch(old%friction, start, w%old%friction)
-        end if
+        call fetch(old%spring, start, w%old%spring)
+        if (abs(w%method%alpha_f) > 0.0_dp .or. abs(w%method%alpha_m) > 0.0_dp) call fetch( &
+            old%friction, start, w%old%friction)   ! Newmark's method does not need it
         do k = 1, size(old%statev, 2)
             call fetch(old%statev(:, k), start, w%old%statev(:, k))
         end do

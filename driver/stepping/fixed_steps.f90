@@ -7,6 +7,7 @@ module fixed_steps
     use energies, only : account
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
+    use step_sums, only : block_sums
     use time_integrator, only : newmark
     implicit none
     private
@@ -17,8 +18,9 @@ module fixed_steps
         class(newmark), allocatable :: method
         integer :: passed = 0          !! whole steps behind us
         integer :: parts = 1           !! pieces that the step is being taken in
+        type(block_sums), private :: over_step   !! the last one
     contains
-        procedure :: prepare, step, visit, why_stopped
+        procedure :: prepare, step, sums, visit, why_stopped
     end type fixed
 
     integer, parameter :: most_parts = 2**20   !! of a step
@@ -56,7 +58,10 @@ contains
             call self%method%step(self%system, self%origin + self%drive%position(time), &
                 self%drive%normal_traction(time, self%drive%piece(time)), time - old%time, old, &
                 new, report)
-            if (report%status >= 0) call account(self%system, old, new)
+            if (report%status >= 0) then
+                self%over_step = self%method%sums(self%system, old, new)
+                call account(self%system, self%over_step, old, new)
+            end if
             new%time = time
             call self%count_iterations(report%iterations)
             if (report%status >= 0) exit
@@ -74,6 +79,14 @@ contains
             if (mod(self%parts, 2) == 0) self%parts = self%parts / 2
         end if
     end subroutine step
+
+    pure function sums(self, old, new) result(over_step)
+        class(fixed), intent(in) :: self
+        type(slider_state), intent(in) :: old, new
+        type(block_sums) :: over_step
+
+        over_step = self%over_step
+    end function sums
 
     subroutine visit(self, file)
         class(fixed), intent(inout) :: self

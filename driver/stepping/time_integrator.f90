@@ -8,6 +8,7 @@ module time_integrator
     use contact_forces, only : friction_forces
     use slider_system, only : ends_fixed_free, ends_free, ends_free_fixed, ends_periodic, &
         slider, slider_state
+    use step_sums, only : block_sums, sum_blocks
     implicit none
     private
 
@@ -49,7 +50,7 @@ module time_integrator
         type(workspace), private :: work
         type(balance), private :: now
     contains
-        procedure :: step, set_as, motion
+        procedure :: step, sums, set_as, motion
     end type newmark
 
 contains
@@ -131,6 +132,16 @@ contains
         report%stiffness = system%stiffness + maxval(self%work%tangent) + 4.0_dp * system%coupling
         if (.not. self%now%inertial) call look_for_another_balance(self, system, old, new, report)
     end subroutine step
+
+    !> Over the blocks, for the step that was taken last.
+    pure function sums(self, system, old, new) result(over_step)
+        class(newmark), intent(in) :: self
+        type(slider), intent(in) :: system
+        type(slider_state), intent(in) :: old, new   !! of this step
+        type(block_sums) :: over_step
+
+        over_step = sum_blocks(system, old, new, 1, size(new%x))
+    end function sums
 
     !> Newton's method, with steps cut where the residual would rise.
     subroutine iterate(self, system, old, new, report, balanced)
