@@ -76,6 +76,9 @@ contains
             call file%reject(group, 'duration', 'must have ' // counted(n) &
                 // ', one for each piece')
         end if
+        if (change == 'ramp' .and. size(duration) == 0) then
+            call file%reject(group, 'normal_change', "needs the key duration with 'ramp'")
+        end if
         if (size(file%faults) > faults_before) return
 
         if (size(velocity) < n) velocity = [(velocity(1), i = 1, n)]
@@ -89,7 +92,13 @@ contains
         drive%velocity = velocity
         drive%normal = normal
         drive%normal_rate = 0.0_dp * normal
-        if (change == 'ramp' .and. n > 1) call make_ramps(duration, drive)
+        if (change == 'ramp' .and. size(duration) == n) then
+            call make_ramps(duration, drive)
+            if (file%given('slider', 'normal_traction')) then
+                drive%normal(1) = normal_traction
+                drive%normal_rate(1) = (drive%normal(2) - normal_traction) / duration(1)
+            end if
+        end if
         drive%acceleration = 0.0_dp * drive%velocity
         call drive%add_up_travel()
 
@@ -106,8 +115,8 @@ contains
 
     end subroutine read_drive_lists
 
-    !> Each piece starts at the normal traction of the one before, and ends at its own; another one
-    !> then holds the last.
+    !> Each piece starts at the normal traction of the one before, the first at its own, and ends at
+    !> its own; another one then holds the last.
     subroutine make_ramps(duration, drive)
         real(dp), intent(in) :: duration(:)      !! [T]
         type(programme), intent(inout) :: drive

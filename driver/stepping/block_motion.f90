@@ -1,9 +1,9 @@
 !> Where a block is in continuous time, and what states hold of that.
 module block_motion
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : facts => law_facts, friction_facts, law_state, onset_yields, &
-        prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, statev_slip, &
-        statev_status, statev_u_et
+    use friction_mod, only : facts => law_facts, friction_facts, law_state, onset_drops, &
+        onset_gradual, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
+        statev_slip, statev_status, statev_u_et
     use law_facts, only : typical_strength
     use run_settings, only : settings
     use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
@@ -122,7 +122,7 @@ contains
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new  !! its time and drive are given
         type(law_state) :: state
-        real(dp) :: pressure, strength
+        real(dp) :: pressure
 
         ! what accumulates never falls, not even by round-off
         y(slip) = max(y(slip), old%statev(i, statev_slip))
@@ -139,15 +139,36 @@ contains
             dy(slip) > 0.0_dp)
         new%statev(i, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
         new%statev(i, statev_r) = state%r
-        if (eq%surface%traits%memory == 1) then
-            new%statev(i, statev_mu) = state%mu
-        else if (pressure > 0.0_dp) then
-            strength = abs(eq%traction(t, y))
-            if (eq%surface%traits%onset == onset_yields) strength = eq%strength(y, pressure)
-            new%statev(i, statev_mu) = max(0.0_dp, strength - eq%surface%cohesion) / pressure
-        end if
+        new%statev(i, statev_mu) = coefficient(eq, state, pressure, abs(eq%traction(t, y)), &
+            dy(slip))
         new%statev(i, statev_slip) = y(slip)
         new%statev(i, statev_dissipation) = y(dissipated)
     end subroutine fill_block
+
+    !> Friction coefficient as `friction_update` has it: of a surface that sticks or is open that at
+    !> rest, of one that creeps what it carries.
+    pure function coefficient(eq, state, pressure, traction, slip_rate) result(mu)
+        type(slider_equations), intent(in) :: eq
+        type(law_state), intent(in) :: state
+        real(dp), intent(in) :: pressure    !! [F/L^2]
+        real(dp), intent(in) :: traction    !! [F/L^2]
+        real(dp), intent(in) :: slip_rate   !! [L/T]
+        real(dp) :: mu, resistance, by_rate, some
+        logical :: carried
+
+        mu = state%mu
+        if (eq%surface%traits%memory == 1) return
+        ! friction that drops follows the block's velocity on a bare contact spring
+        carried = eq%surface%traits%onset == onset_gradual .or. eq%surface%traits%onset &
+            == onset_drops .and. slip_rate > 0.0_dp .and. traction < eq%surface%tau_max
+        if (carried) then
+            mu = 0.0_dp
+            if (pressure > 0.0_dp) mu = max(0.0_dp, traction - eq%surface%cohesion) / pressure
+        else   ! under any pressure
+            some = max(1.0_dp, eq%surface%cohesion)
+            call eq%surface%resistance_at(state, max(0.0_dp, slip_rate), some, resistance, by_rate)
+            mu = max(0.0_dp, resistance - eq%surface%cohesion) / some
+        end if
+    end function coefficient
 
 end module block_motion

@@ -149,7 +149,7 @@ contains
             if (tried%error <= 1.0_dp) exit
             again = .true.
             if (.not. self%can_shorten(old%time, tried%h, tried%error)) then
-                if (stopped(self%block)) then
+                if (stopped(self%block, old%time)) then
                     call settle(self%block, old%time)
                     self%dt = 1.0e3_dp * shortest * old%time
                     cycle

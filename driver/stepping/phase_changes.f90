@@ -144,9 +144,10 @@ contains
         integer, parameter :: most_switches = 6
         real(dp), parameter :: round_off = 1.0e-12_dp
         real(dp) :: g(switches), v_drive, pressure, pressure_rate
-        logical :: failed, slides
+        logical :: failed, slides, came_to_rest
         integer :: i
 
+        came_to_rest = .false.
         associate (eq => block%equations)
             do i = 1, most_switches
                 if (.not. block%known) call eq%rates(t, block%y, block%first, failed)
@@ -158,8 +159,10 @@ contains
                     if (g(1) < -round_off * eq%strength(block%y, pressure)) return
                     slides = would_slide(block, pressure, pressure_rate)
                     if (.not. (slides .and. (g(1) > 0.0_dp .or. .not. eq%rigid))) return
+                    if (came_to_rest) return   ! friction that drops does so by less than round-off
                     call change_phase(block, t, 1)
                 else if (g(1) > 0.0_dp .or. g(2) > 0.0_dp) then
+                    came_to_rest = g(1) > 0.0_dp
                     call change_phase(block, t, merge(1, 2, g(1) > 0.0_dp))
                 else
                     return
@@ -184,8 +187,9 @@ contains
             healing = block%equations%surface%state_rates(block%equations%law_state_of(block%y, &
                 pressure), load_rates(strength, 0.0_dp, block%equations%alpha, pressure, &
                 pressure_rate, .false.), 0.0_dp)
-            growth = (strength - block%equations%surface%cohesion) / pressure * pressure_rate &
-                + healing%mu * pressure
+            growth = healing%mu * pressure
+            if (pressure > 0.0_dp) growth = growth + (strength &
+                - block%equations%surface%cohesion) / pressure * pressure_rate
         end if
         slides = block%equations%alpha * block%equations%sense_of(block%y(elastic)) &
             * block%first(elastic) > growth

@@ -350,6 +350,10 @@ contains
         push = self%sense * self%stiffness * y(extension) / self%area
         call slip_of(self%surface, law_state_of(self, y, pressure), pressure, &
             damper_balance(self%sense, push, self%damping / self%area), v, failed)
+        if (.not. (failed .or. v > 0.0_dp)) then   ! pushed back: where slip ends is seen by that
+            v = (push - min(strength(self, y, pressure), self%surface%tau_max)) * self%area &
+                / self%damping
+        end if
         v = self%sense * v
     end subroutine find_velocity
 
@@ -373,7 +377,7 @@ contains
             resistance = self%surface%tau_max
             by_rate = 0.0_dp
             contact%elastic = 0.0_dp
-        else
+        else if (pressure > 0.0_dp) then
             contact%elastic = self%sense * (resistance - self%surface%cohesion) / pressure &
                 * pressure_rate
         end if

@@ -4,11 +4,12 @@ module sudden_changes
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
     use contact_forces, only : apply_normal_traction
-    use friction_mod, only : law_state, load_rates
+    use friction_mod, only : law_state, load_rates, prop_alpha_t, statev_size, &
+        statev_status, statev_u_et, statev_u_n
     use phase_changes, only : phase_at_rest, slide_on
     use slider_rates, only : elastic, extension, memory, phase_capped, phase_open, phase_slide, &
-        phase_stick, ratio, slip, unknowns, velocity
-    use slider_system, only : slider, slider_state
+        phase_stick, ratio, slider_equations, slip, unknowns, velocity
+    use slider_system, only : set_accelerations, slider, slider_state
     implicit none
     private
 
@@ -56,19 +57,29 @@ contains
     end subroutine hold_velocity
 
     !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
-    !> can tell: friction falls to what balances the drive spring, or changes its side, at once.
-    function stopped(block) result(yes)
+    !> can tell: friction falls to what balances the drive spring, or changes its side, at once. On
+    !> that side the block is some times faster, or as short steps would be asked for again.
+    function stopped(block, t) result(yes)
         type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: t   !! [T]
         logical :: yes
+        real(dp), parameter :: faster = 16.0_dp
         real(dp) :: pull   !! as a traction [F/L^2]
+        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
 
         associate (eq => block%equations, y => block%y)
             pull = eq%stiffness * y(extension) / eq%area
             yes = eq%follows_traction() .and. sign(pull, pull * y(elastic)) &
                 < eq%alpha * abs(y(elastic))
             if (.not. yes) return
-            y(elastic) = -y(elastic)
-            if (abs(pull) < eq%alpha * abs(y(elastic))) y(elastic) = pull / eq%alpha
+            if (abs(pull) < eq%alpha * abs(y(elastic))) then
+                y(elastic) = pull / eq%alpha
+            else
+                call eq%inputs(t, v_drive, pressure, pressure_rate)
+                call eq%surface%resistance_at(eq%law_state_of(y, pressure), faster &
+                    * block%first(slip), pressure, resistance, by_rate)
+                y(elastic) = sign(min(resistance, abs(pull)), pull) / eq%alpha
+            end if
             block%known = .false.
         end associate
     end function stopped
@@ -115,7 +126,7 @@ contains
             call press(block, max(state%normal, eq%least_pressure), max(pressure, &
                 eq%least_pressure), time_lost)
             if (eq%follows_share()) call slide_on(block, state%normal)
-            call apply_normal_traction(system, pressure, state, taken)
+            call load_springs(eq, system, pressure, state, taken)
             block%known = .false.
             if (eq%damper > 0.0_dp) return
             if (eq%phase == phase_capped) eq%phase = phase_slide
@@ -131,6 +142,81 @@ contains
             end if
         end associate
     end subroutine jump_to
+
+    !> The springs under a normal traction that jumps. A block without mass and damper goes along:
+    !> to friction its drive spring and its contact spring are one then.
+    subroutine load_springs(eq, system, pressure, state, taken)
+        type(slider_equations), intent(in) :: eq
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken      !! or else left to the rates
+        type(slider) :: springs
+        real(dp) :: part   !! of the contact spring's stiffness that both have [-]
+
+        part = 1.0_dp
+        if (.not. (eq%rigid .or. eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
+            part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
+        end if
+        springs = system
+        springs%props(prop_alpha_t) = part * springs%props(prop_alpha_t)
+        if (allocated(springs%constants)) springs%constants(1, prop_alpha_t) = part &
+            * springs%constants(1, prop_alpha_t)
+        state%statev(1, statev_u_et) = state%statev(1, statev_u_et) / part
+        if (eq%surface%traits%memory == 1 .and. pressure < state%normal) then
+            call relieve(springs, pressure, state, taken)
+        else
+            call apply_normal_traction(springs, pressure, state, taken)
+        end if
+        state%statev(1, statev_u_et) = part * state%statev(1, statev_u_et)
+        if (.not. (taken .and. part < 1.0_dp)) return
+        state%spring = state%friction
+        state%x = state%drive - state%spring / eq%stiffness
+    end subroutine load_springs
+
+    !> A normal traction that falls at once on a surface which slides meanwhile: what the update
+    !> tends to in ever smaller parts of the fall, extrapolated (Richardson) from 1, 2, 4, ... of
+    !> them, because in one part it is of first order in the slip.
+    subroutine relieve(springs, pressure, state, taken)
+        type(slider), intent(in) :: springs
+        real(dp), intent(in) :: pressure   !! afterwards [F/L^2]
+        type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken
+        integer, parameter :: most_halvings = 12
+        real(dp), parameter :: close = 1.0e-13_dp   !! of the displacements
+        type(slider_state) :: start, fallen
+        real(dp) :: old(statev_size), new(statev_size), guess(statev_size, 0:most_halvings)
+        real(dp), allocatable :: props(:)
+        integer :: halvings, i
+
+        start = state
+        old = 0.0_dp
+        do halvings = 0, most_halvings
+            fallen = start
+            do i = 1, 2**halvings
+                call apply_normal_traction(springs, start%normal + (pressure - start%normal) &
+                    * (real(i, dp) / 2**halvings), fallen, taken)
+                if (.not. taken) return
+            end do
+            new = fallen%statev(1, :)
+            do i = 0, halvings - 1   ! Neville's scheme for an error in powers of the part
+                associate (coarser => guess(:, i))
+                    old = coarser
+                    coarser = new
+                    new = new + (new - old) / (2.0_dp**(i + 1) - 1.0_dp)
+                end associate
+            end do
+            guess(:, halvings) = new
+            if (halvings > 0 .and. abs(new(statev_u_et) - old(statev_u_et)) <= close &
+                * abs(start%statev(1, statev_u_et))) exit
+        end do
+        state = fallen
+        state%statev(1, :) = new
+        state%statev(1, [statev_status, statev_u_n]) = fallen%statev(1, [statev_status, statev_u_n])
+        props = springs%props_of(1)
+        state%friction = springs%area * props(prop_alpha_t) * new(statev_u_et)
+        call set_accelerations(springs, state)
+    end subroutine relieve
 
     !> A contact that is in its new phase carries nothing at first.
     subroutine open_or_touch(block, pressure, touches)

@@ -125,6 +125,16 @@ class Programme(Columns):
         for t, normal in zip(*self.normal_traction(text)):
             self.assertAlmostEqual(normal, 10 + 250 * min(max(t - 0.02, 0), 0.04), delta=1e-10)
 
+    def test_the_first_ramp_starts_from_the_normal_traction_of_the_slider(self):
+        ramp = {**self.sliding, ('drive', 'normal'): '20, 15', ('drive', 'duration'): '0.02, 0.04', ('drive', 'normal_change'): "'ramp'"}
+        self.refused(namelist({**ramp, ('drive', 'normal'): '20'}, [('drive', 'duration')]), "normal_change = 'ramp': needs the key duration")
+        for t, normal in zip(*self.normal_traction(namelist(ramp))):
+            self.assertAlmostEqual(normal, 10 + 500 * min(t, 0.02) - 125 * min(max(t - 0.02, 0), 0.04), delta=1e-10)
+        one = {**ramp, ('drive', 'normal'): '20', ('drive', 'duration'): '0.05'}   # a single piece; without the key it is held
+        for more, start in (([], 10), ([('slider', 'normal_traction')], 20)):
+            for t, normal in zip(*self.normal_traction(namelist(one, more))):
+                self.assertAlmostEqual(normal, start + (20 - start) / 0.05 * min(t, 0.05), delta=1e-10)
+
     def test_normal_traction_oscillates(self):
         text = namelist({**self.sliding, ('drive', 'normal_amplitude'): '4',
                          ('drive', 'normal_frequency'): '3', ('drive', 'normal_phase'): '0.5'})

@@ -2,6 +2,7 @@
 
 STICKSLIP names the program.
 """
+import math
 import re
 import unittest
 
@@ -188,6 +189,101 @@ class Phases(Program):
         self.assertGreater(max(abs(row['velocity']) for row in rows), 1e-4)
         for row in slow:
             self.assertAlmostEqual(row['friction_force'], row['spring_force'], delta=1e-4 * 4.8)
+
+    def test_a_massless_undamped_block_follows_a_load_that_falls_at_once(self):
+        # both springs give up (drop)^2/2 (1/alpha + area/stiffness), and more as they push on: it ends in balance
+        for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
+                    "d_c=1, xi=0.1", "'subloading', mu_s=0.5, mu_k=0.4, kappa=1, xi=0.1, m=100",
+                    "'rate_and_state', a=0.01, b=0.005, d_c=0.1, v0=1, f0=0.5"):
+            rows, energies = self.table(f"""&friction law={law}, alpha_n=10, alpha_t=10 /
+                &slider mass=0, stiffness=2, area=1.5 /
+                &drive velocity=1, duration=3, 2, normal=1, 0.5 /
+                &time t_end=5, rtol=1e-7 /""")
+            with self.subTest(law=law):
+                for row in rows:
+                    self.assertAlmostEqual(row['friction_force'], row['spring_force'], delta=1e-6)   # 0.5 apart
+                self.assertLess(abs(energies['unbalanced']), 1e-5 * energies['drive'])
+
+    def test_a_subloading_surface_slides_as_far_as_its_law_says_while_the_load_falls_at_once(self):
+        # alpha (u - s) = R(s) mu p, R from R' = m U(R) along the slip s: no slip rate and no step has a say in that
+        def cotangent(r, s):
+            return 2 / math.pi * math.acos(math.cos(math.pi * r / 2) * math.exp(-math.pi * s / 2))
+
+        def reciprocal(r, s):
+            low, high = r, 1.0
+            for _ in range(80):
+                middle = (low + high) / 2
+                low, high = (middle, high) if -middle - math.log(1 - middle) < -r - math.log(1 - r) + s else (low, middle)
+            return low
+
+        for name, after in (('cotangent', cotangent), ('reciprocal', reciprocal)):
+            rows, _ = self.table(f"""&friction law='subloading', alpha_n=30, alpha_t=30, mu_s=0.6, mu_k=0.2, kappa=0, xi=0, m=20,
+                    u_of_r='{name}' /
+                &slider mass=1e12, stiffness=1 /
+                &drive velocity=0, duration=1e-3, 1e-3, normal=1.5, 0.7 /
+                &initial r=0.3 /
+                &time t_end=2e-3, rtol=1e-8 /""")
+            low, high = 0.0, 0.3 * 0.6 * 1.5 / 30
+            for _ in range(80):
+                slip = (low + high) / 2
+                sliding = 0.3 * 0.6 * 1.5 - 30 * slip > after(0.3, 20 * slip) * 0.6 * 0.7
+                low, high = (slip, high) if sliding else (low, slip)
+            self.assertAlmostEqual(rows[-1]['slip'], slip, delta=1e-9 * slip)   # 1e-2 in one increment
+            self.assertAlmostEqual(rows[-1]['R'], after(0.3, 20 * slip), delta=1e-9)
+
+    def test_a_massless_block_that_is_pulled_back_under_a_cap_sticks(self):
+        # K e = C v + S f_t: it stood still, and the cap carried on whatever the spring did
+        rows, energies = self.table("""&friction law='static_kinetic', alpha_n=5, alpha_t=5, mu_s=0.66, mu_k=0.5, d_c=8, tau_max=0.08 /
+            &slider mass=0, stiffness=1, damping=3, area=5, normal_traction=0.2 /
+            &drive velocity=0.03, -0.03, duration=25, 25 /
+            &time t_end=50, rtol=1e-7 /""")
+        for row in rows:
+            self.assertAlmostEqual(row['spring_force'] - 3 * row['velocity'], row['friction_force'], delta=1e-6)
+        self.assertLess(min(row['friction_force'] for row in rows), -0.2)
+        self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])
+
+    def test_static_kinetic_friction_that_cohesion_alone_carries_comes_to_rest(self):
+        # no pressure, closed: friction drops by less than round-off, and slip that ended began again, for ever
+        text = """&friction law='static_kinetic', alpha_n=1.935, alpha_t=1.935, mu_s=0.344, mu_k=0.259, d_c=1.36, cohesion=0.0356 /
+            &slider mass=1, stiffness=1.47, area=6.39 /
+            &drive velocity=0.255, 0.0765, duration=11, 9, normal=0.2, 0 /
+            &time t_end=20, rtol=1e-9 /"""
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_a_rigid_contact_that_stops_late_in_a_run_turns_to_the_other_side(self):
+        # the time in which the traction changes its side is near the round-off of the time
+        _, energies = self.table("""&friction law='linker_dieterich', alpha_n=8644.285953846187, alpha_t=8644.285953846187,
+                a=0.007991900133245602, b=0.005316609961543529, d_c=0.10115188930788666, v0=0.0044917121359247004,
+                f0=0.6975600327906271, evolution='slip', alpha=0.055398649553606794, theta_0=51.76510187122059, contact='rigid' /
+            &slider mass=17259423.500506684, stiffness=1138.9312170534333, normal_traction=594.509226473834 /
+            &drive velocity=0.02565355485757676, 0.0053290620086850074, 0.021938498519616132, 0.033789832090106726,
+                0.002728077105183427, 0.014479139210332325, duration=300.79947872179474, 291.94604164303263, 653.0168766781924,
+                466.9150903083458, 761.0390767937947, 562.3460292870786 /
+            &time t_end=3036.0625934322384, rtol=1e-09 /
+            &output every=15.180312967161193 /""")
+        self.assertLess(abs(energies['unbalanced']), 1e-6 * energies['dissipated'])
+
+    def test_the_friction_coefficient_is_that_of_fixed_steps_at_rest_and_open(self):
+        for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
+                    "d_c=1, xi=0.3", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1, "
+                    "tau_max=0.44", "'rate_and_state', a=0.01, b=0.005, d_c=0.1, v0=1, f0=0.5, cohesion=0.1",
+                    "'subloading', mu_s=0.5, mu_k=0.4, kappa=1, xi=0.1, m=100"):
+            seen = []
+            for steps, rows_at in (('rtol=1e-7', 'every=0.1'), ('dt=1e-3', 'interval=100')):
+                result = self.run_text(f"""&friction law={law}, alpha_n=100, alpha_t=100 /
+                    &slider mass=1, stiffness=2, damping=2 /
+                    &drive velocity=1, duration=2.5, 2.5, normal=1, 0 /
+                    &time t_end=5, {steps} /
+                    &output {rows_at} /""", '--no-plot')
+                self.assertEqual(result.returncode, 0, result.stderr)
+                seen.append([{key: float(row[key]) for key in ('time', 'mu', 'slip')} for row in self.rows('case_out/case.csv')])
+            with self.subTest(law=law):
+                for adaptive, fixed in zip(*seen):   # before it slips, and open: friction that drops sticks and slips in fixed steps
+                    if max(adaptive['slip'], fixed['slip']) < 1e-9 or fixed['time'] > 2.55 or 'static' not in law and fixed['time'] < 2.45:
+                        self.assertAlmostEqual(adaptive['mu'], fixed['mu'], delta=5e-3, msg=fixed['time'])
+                if 'tau_max' in law:   # slides under its cap
+                    self.assertAlmostEqual(seen[0][20]['mu'], 0.4 + 0.1 * math.exp(-1), delta=0.02)
 
     def test_work_that_the_drive_gets_back_is_no_open_balance(self):
         # swings within the strength, and back to where it was: no warning
