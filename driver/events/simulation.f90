@@ -85,6 +85,8 @@ contains
         call news%clear()
         if (.not. live%resumed) call begin_all(live, observers, news)
         live%other = live%state
+        call live%state%use_large_pages()
+        call live%other%use_large_pages()
         do while (len(live%problem) == 0 .and. .not. live%steps%finished(live%state))
             call live%steps%step(live%state, live%other, report)
             if (report%status < 0) then

@@ -10,6 +10,7 @@ module slider_system
     use archive_file, only : archive
     use friction_mod, only : facts => law_facts, friction_facts, prop_alpha_n, statev_u_n
     use law_facts, only : cohesion_of_each
+    use platform, only : use_large_pages
     implicit none
     private
 
@@ -68,7 +69,7 @@ module slider_system
         real(dp), allocatable :: friction(:)     !! S f_t, positive when it opposes +x [F]
         real(dp), allocatable :: statev(:, :)    !! of the friction routine, one row a block
     contains
-        procedure :: visit
+        procedure :: use_large_pages => state_in_large_pages, visit
     end type slider_state
 
 contains
@@ -231,6 +232,18 @@ contains
         call file%visit(self%friction)
         call file%visit(self%statev)
     end subroutine visit
+
+    !> Keeps the state of a long chain where a step goes through it without waiting for page tables.
+    subroutine state_in_large_pages(self)
+        class(slider_state), intent(in) :: self
+
+        call use_large_pages(size(self%x), self%x)
+        call use_large_pages(size(self%v), self%v)
+        call use_large_pages(size(self%a), self%a)
+        call use_large_pages(size(self%spring), self%spring)
+        call use_large_pages(size(self%friction), self%friction)
+        call use_large_pages(size(self%statev), self%statev)
+    end subroutine state_in_large_pages
 
     !> Exchanges two states without copying them.
     pure subroutine swap_states(a, b)

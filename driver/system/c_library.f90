@@ -1,14 +1,14 @@
 !> Procedures of the C library that the program calls.
 module c_library
     use, intrinsic :: iso_c_binding, only : c_char, c_double, c_funptr, c_int, c_int64_t, &
-        c_long, c_ptr, c_size_t
+        c_intptr_t, c_long, c_ptr, c_size_t
     implicit none
     private
 
     public :: c_access, c_close, c_end, c_execv, c_exit, c_fclose, c_ferror, c_fflush, c_fopen, &
-        c_fork, c_fread, c_fwrite, c_isatty, c_kill, c_mkdir, c_pipe, c_poll, c_puts, c_read, &
-        c_readlink, c_realpath, c_remove, c_rename, c_signal, c_strlen, c_strtod, c_truncate, &
-        c_wait, c_waitpid, c_write
+        c_fork, c_fread, c_fwrite, c_isatty, c_kill, c_madvise, c_mkdir, c_pipe, c_poll, c_puts, &
+        c_read, c_readlink, c_realpath, c_remove, c_rename, c_signal, c_strlen, c_strtod, &
+        c_truncate, c_wait, c_waitpid, c_write
 
     interface
         integer(c_int) function c_execv(path, arguments) bind(C, name='execv')
@@ -40,6 +40,15 @@ module c_library
             implicit none
             integer(c_int), value, intent(in) :: descriptor
         end function c_isatty
+
+        !> Of memory from a page's start on.
+        integer(c_int) function c_madvise(start, length, advice) bind(C, name='madvise')
+            import :: c_int, c_intptr_t, c_size_t
+            implicit none
+            integer(c_intptr_t), value, intent(in) :: start
+            integer(c_size_t), value, intent(in) :: length
+            integer(c_int), value, intent(in) :: advice
+        end function c_madvise
 
         integer(c_int) function c_mkdir(path, mode) bind(C, name='mkdir')
             import :: c_char, c_int

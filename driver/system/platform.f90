@@ -1,17 +1,18 @@
 !> What the program asks of the operating system: C library calls behind Fortran names.
 module platform
     use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_funloc, c_funptr, c_int, &
-        c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
+        c_intptr_t, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
-    use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_mkdir, c_puts, &
-        c_readlink, c_realpath, c_remove, c_rename, c_signal, c_truncate
+    use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_madvise, &
+        c_mkdir, c_puts, c_readlink, c_realpath, c_remove, c_rename, c_signal, c_truncate
     use printable_text, only : replaced
     implicit none
     private
 
     public :: cores, exit_program, have_command, hold_output, interrupted, is_directory, &
         is_terminal, make_directory, plain_path, program_beside, remove_file, rename_file, &
-        replace_program, seconds, shell_word, truncate_file, watch_for_interrupts
+        replace_program, seconds, shell_word, truncate_file, use_large_pages, &
+        watch_for_interrupts
 
     ! Module variables, because a signal handler has no arguments to leave its message in.
     logical, volatile :: was_interrupted = .false.
@@ -234,5 +235,27 @@ contains
         call system_clock(count, rate)
         time = real(count, real64) / real(rate, real64)
     end function seconds
+
+    !> Asks the system to keep an array in large pages, of 2 MiB: a loop over many arrays at once
+    !> else waits for page tables where they are longer than these reach. What it cannot do it
+    !> leaves. Other systems than Linux have other advice, or large pages without being asked.
+    subroutine use_large_pages(n, numbers)
+        integer, intent(in) :: n                        !! numbers
+        real(real64), intent(in), target :: numbers(n)   !! to be filled, or filled already
+        integer(c_int), parameter :: huge_pages = 14_c_int, collapse = 25_c_int   ! Linux 6.1 on
+        integer(c_intptr_t), parameter :: page = 2_c_intptr_t**21   ! [bytes]
+        integer(c_intptr_t) :: first, behind
+        integer(c_int) :: status
+        logical :: linux
+
+        first = transfer(c_loc(numbers), first)
+        behind = (first + 8_c_intptr_t * n) / page * page
+        first = (first + page - 1) / page * page
+        if (behind <= first) return
+        inquire (file='/sys/kernel/mm/transparent_hugepage/enabled', exist=linux)
+        if (.not. linux) return
+        status = c_madvise(first, int(behind - first, c_size_t), huge_pages)
+        if (status == 0) status = c_madvise(first, int(behind - first, c_size_t), collapse)
+    end subroutine use_large_pages
 
 end module platform
