@@ -36,7 +36,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     integer, parameter :: large_displacements = 1   ! in jstep(3)
     integer, parameter :: perturbation = 1          ! in jstep(4)
     real(wp), parameter :: largest_tilt = 1.0e-3_wp
-    real(wp) :: state(statev_size), change(ntens)
+    real(wp) :: state(statev_size), change(6)
     integer :: status
 
     if (ndi == 3 .and. jstep(3) == large_displacements) then
@@ -53,7 +53,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
         if (jstep(4) == perturbation) then
             call perturb_layer(ndi, nshr, nprops, props, dstran, state, stress, ddsdde, change, &
                 status)
-            if (status >= 0) stress = stress + change
+            if (status >= 0) stress = stress + change(:ntens)
         else
             if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
             call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &

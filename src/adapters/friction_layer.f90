@@ -115,19 +115,23 @@ contains
         real(wp), intent(inout) :: ddsdde(ndi + nshr, ndi + nshr)
         real(wp), intent(inout) :: change(ndi + nshr)   !! out: of the stress [F/L^2]
         integer, intent(out) :: status
-        real(wp) :: still(ndi + nshr), carried(ndi + nshr), state(statev_size), sse, spd
-        integer :: j
+        integer, parameter :: most = 6   ! arrays of another size would be allocated
+        real(wp) :: still(most), carried(most), state(statev_size), sse, spd
+        integer :: n, j
 
+        n = ndi + nshr
+        status = friction_bad_size
+        if (n > most) return
         status = friction_bad_increment
         if (.not. all(usable(strain))) return
         still = 0.0_wp
-        carried = stress
+        carried(:n) = stress
         state = statev
         call layer_update(ndi, nshr, nprops, props, still, 0.0_wp, state, carried, ddsdde, sse, &
             spd, status)
         if (status < 0) return
         change = 0.0_wp
-        do j = 1, ndi + nshr
+        do j = 1, n
             change = change + ddsdde(:, j) * strain(j)
         end do
     end subroutine perturb_layer
