@@ -18,7 +18,7 @@ module fault_implicit
     use fault_start, only : start_contacts
     use fault_stepper, only : stepper
     use friction_mod, only : friction_facts, friction_update_batch, law_facts, &
-        statev_dissipation, statev_r, statev_size, statev_slip
+        statev_dissipation, statev_mu, statev_r, statev_size, statev_slip
     use minres, only : solve_minres
     use processes, only : team
     implicit none
@@ -162,7 +162,7 @@ contains
                 0.5_dp * dt, two, sound)
             factor = least
             error = huge(error)
-            if (sound) call self%see_instability(here, together, dt, sound)
+            if (sound) call self%see_instability(here, together, dt, two, sound)
             if (sound) then
                 error = together%largest(max(maxval(abs(two%slip - whole%slip) / here%slip_scale), &
                     maxval(abs(two%traction - whole%traction) / (part * here%pressure)))) &
@@ -261,21 +261,28 @@ contains
     !> than the surroundings unload, slip grows at a rate of (weakening - unloading)/(2 damping) or
     !> more, which takes hours to months. BDF2 damps what grows within a step of many times that
     !> long: nothing but the matrix, which is then not definite, tells. The mode that is nearest to
-    !> it is followed from step to step by inverse iteration.
-    subroutine see_instability(self, here, together, dt, sound)
+    !> it is followed from step to step by inverse iteration. A step in which a cell weakens and
+    !> slips far may hold the whole of it, and look stable at both of its ends.
+    subroutine see_instability(self, here, together, dt, last, sound)
         class(implicit_steps), intent(inout) :: self
         type(fault), intent(inout) :: here
         type(team), intent(in) :: together
         real(dp), intent(in) :: dt
-        logical, intent(out) :: sound   !! the step sees it, or there is none
+        type(contact), intent(in) :: last   !! after the step
+        logical, intent(out) :: sound       !! the step sees it, or there is none
         real(dp), parameter :: tolerance = 0.1_dp
+        real(dp), parameter :: far = 0.3_dp          !! of the slip over which the law evolves
+        real(dp), parameter :: weaker = 1.0e-3_dp    !! fall of the friction coefficient
         real(dp), dimension(here%n) :: compliance, x
         real(dp) :: size_of_x
+        logical :: passes
 
         compliance = max(1.0_dp - self%tangent(:, 2, 2) / self%stiffness, least_compliance)
         call solve_minres(here, together, self%tangent(:, 2, 2) / compliance + here%damping &
             * 1.5_dp / dt, self%mode, tolerance, x, sound)
-        sound = sound .or. dt <= self%resolved
+        passes = any(abs(last%slip - self%now%slip) > far * here%slip_scale &
+            .and. self%now%statev(:, statev_mu) - last%statev(:, statev_mu) > weaker)
+        sound = sound .and. .not. together%any_of(passes) .or. dt <= self%resolved
         size_of_x = sqrt(here%part%row_sums(together, x**2))
         if (size_of_x > 0.0_dp) self%mode = x / size_of_x
     end subroutine see_instability

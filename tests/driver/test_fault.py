@@ -477,6 +477,30 @@ class Laws(FaultTest):
         loading, *others = (float(end[name]) for name in ('loading_work', 'elastic_energy', 'dissipated', 'radiated'))
         self.assertLess(abs(loading - sum(others)), 1e-3 * loading)
 
+    def test_an_earthquake_is_not_stepped_over(self):
+        """A cell under a stiffer neighbour that does not slip: its onset, and its slip until the traction is back at mu_k, in closed
+        form. Before and after it the cell sticks, so that both ends of a long step are stable."""
+        self.write('z,mu_s,traction\n500,0.59,22.68e6\n1500,0.9,22.68e6\n', 'cells.csv')
+
+        def effect(distance):
+            return 30e9 / (2 * math.pi * 1e3) * (1 / (distance - 0.5) - 1 / (distance + 0.5))
+
+        own = effect(0) + effect(1)
+        onset = (0.59 * 50e6 - 22.68e6) / -(own + effect(1) + effect(2)) / 1e-9
+        for law, off in (("'slip_weakening', d_c = 0.1", 1e-6), ("'slip_weakening_healing', d_c = 0.1, xi = 1e-14", 1e-6),
+                         ("'subloading', kappa = 40, xi = 0, m = 1e6", 1e-3)):   # which slips a little before
+            for rtol in ('1e-3', '1e-5'):
+                self.run_fault(self.write(f"""
+&fault geometry = 'antiplane_half', width = 2000, nz = 2, shear_modulus = 30e9, wave_speed = 3000, plate_rate = 1e-9,
+       normal_traction = 50e6, initial = 'file', initial_file = 'cells.csv' /
+&friction law = {law}, mu_s = '@cells.csv', mu_k = 0.55 /
+&time t_end = {1.1 * onset}, rtol = {rtol} /
+"""), '--quiet', '--no-plot')
+                events = self.events('case_out', 'case')
+                self.assertEqual(len(events), 1, law)
+                self.assertAlmostEqual(float(events[0]['onset']) / onset, 1.0, delta=off, msg=law)
+                self.assertAlmostEqual(float(events[0]['largest_slip']), 0.04 * 50e6 / -own, delta=0.02 * 0.157, msg=law)
+
     def with_law(self, law):
         first, last = SUBLOADING.index('law ='), SUBLOADING.index("'exact_rate'") + len("'exact_rate'")
         return (SUBLOADING[:first] + law + SUBLOADING[last:]).replace('nz = 96', 'nz = 64')
