@@ -6,6 +6,7 @@ module fault_recorder
     use fault_problem, only : fault, fault_state
     use number_text, only : full_row, whole_text
     use processes, only : team
+    use result_files, only : of_run, remove_results
     use text_file, only : output_file
     implicit none
     private
@@ -57,6 +58,7 @@ contains
         integer :: i
 
         if (.not. self%writes) return
+        call remove_results(self%base, of_run)
         call self%global%create(self%base // '_global.csv')
         call self%global%write_line('time,log10_slip_rate,moment_rate,loading_work,' &
             // 'elastic_energy,dissipated,radiated')

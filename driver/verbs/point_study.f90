@@ -11,6 +11,7 @@ module point_study
     use point_reader, only : read_point_settings
     use point_settings, only : point_run
     use progress_bar, only : progress
+    use result_files, only : of_run, remove_results
     use run_pictures, only : draw_point
     use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
         has_faults, is_for, tell_failure
@@ -55,6 +56,7 @@ contains
         if (has_faults(file)) return
         base = wanted%output // '/' // wanted%stem
         if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
+        call remove_results(base, of_run)
         call records%start(base // '.csv', run%loading%ndir, internal_variable(run%props), &
             run%tangent)
         if (records%file%failed) then

@@ -6,6 +6,7 @@ module stability_study
     use linear_stability, only : undecided
     use namelist_input, only : namelist_file
     use platform, only : report
+    use result_files, only : of_stability, remove_results
     use run_reader, only : read_settings
     use run_settings, only : settings
     use stability_files, only : draw_boundary, eigenvalue_columns, print_stability, &
@@ -50,6 +51,7 @@ contains
         if (has_faults(file)) return
         if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         base = wanted%output // '/' // wanted%stem // '_stability'
+        call remove_results(wanted%output // '/' // wanted%stem, of_stability)
         call into%rows%create(base // '.csv')
         call into%rows%write_line(key_names(plan%axes) // stability_columns)
         call into%eigenvalues%create(wanted%output // '/' // wanted%stem // '_eigenvalues.csv')

@@ -9,6 +9,7 @@ module study
     use platform, only : remove_file, seconds, watch_for_interrupts
     use progress_observer, only : progress_watch
     use recorder, only : csv_recorder
+    use result_files, only : of_run, remove_results
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
     use run_pictures, only : draw_blocks, draw_catalogue, draw_fields, draw_run
@@ -58,6 +59,7 @@ contains
                 return
             end if
         else
+            call remove_results(base, of_run)
             call records%open()
         end if
         call write_blocks(base, run, written)

@@ -9,6 +9,7 @@ module sweep
     use number_text, only : whole_text
     use platform, only : cores, rename_file, report
     use progress_bar, only : progress
+    use result_files, only : of_sweep, remove_results
     use run_observer, only : observer_slot
     use run_outcome, only : outcome
     use run_settings, only : settings
@@ -51,6 +52,8 @@ contains
             write (error_unit, '(2a)') 'stickslip: ', problem
             return
         end if
+        if (wanted%parts == 1) call remove_results(wanted%output // '/' // &
+            wanted%stem, of_sweep)
         mine = is_mine(wanted, size(rows))
         found = count_rows(pack(rows, mine))
         call run_all(plan, wanted, mine, done, rows, problem)

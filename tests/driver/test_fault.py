@@ -297,6 +297,14 @@ class Restart(FaultTest):
 
 
 class Output(FaultTest):
+    def test_a_new_run_removes_what_an_older_one_has_left(self):
+        name = self.write(PLANE)
+        (self.place / 'case_out').mkdir()
+        for old in ('case.png', 'case_station_1.csv', 'case_station_2.csv', 'case_fields_000001.h5', 'case_contours.csv', 'case_notes.txt'):
+            (self.place / 'case_out' / old).write_text('old')
+        self.run_fault(name, '--quiet')
+        self.assertEqual({path.name for path in (self.place / 'case_out').iterdir() if path.read_bytes() == b'old'}, {'case_notes.txt'})
+
     def test_fields_hold_what_the_station_does(self):
         self.run_fault(self.write(PLANE), '--quiet')
         times, fields = read_fields(self.place / 'case_out' / 'case', FIELDS, 30 * 21)
