@@ -3,7 +3,7 @@
 module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use law_facts, only : typical_strength
+    use friction_mod, only : friction_facts, law_facts
     use loading_programme, only : programme
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
@@ -38,6 +38,7 @@ contains
     subroutine prepare(self, run)
         class(slip_watch), intent(inout) :: self
         type(settings), intent(in) :: run
+        type(law_facts) :: law
 
         self%drive = run%drive
         self%stiffness = run%stiffness
@@ -45,7 +46,8 @@ contains
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
         self%finder%impedance = max(run%damping, sqrt(run%stiffness * run%mass))
-        self%coefficient = typical_strength(run%props, 1.0_dp) - typical_strength(run%props, 0.0_dp)
+        law = friction_facts(run%props)
+        self%coefficient = law%typical_coefficient
         call self%finder%give_sense(run%loading_sense(), abs(run%drive%first_velocity()))
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))

@@ -165,7 +165,7 @@ contains
             mu = 0.0_dp
             if (pressure > 0.0_dp) mu = max(0.0_dp, traction - eq%surface%cohesion) / pressure
         else   ! under any pressure
-            some = max(1.0_dp, eq%surface%cohesion)
+            some = max(pressure, eq%least_pressure, eq%surface%cohesion)
             call eq%surface%resistance_at(state, max(0.0_dp, slip_rate), some, resistance, by_rate)
             mu = max(0.0_dp, resistance - eq%surface%cohesion) / some
         end if

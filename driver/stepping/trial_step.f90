@@ -3,7 +3,7 @@
 module trial_step
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
-    use slider_rates, only : damped, dissipated, elastic, extension, slip, unknowns
+    use slider_rates, only : damped, dissipated, elastic, extension, slip, unknowns, velocity
     implicit none
     private
 
@@ -32,16 +32,20 @@ contains
         if (failed) tried%error = huge(tried%error)
         if (wild(block, weight, tried)) tried%error = max(tried%error, 2.0_dp**4)
         if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
-        if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, tried)
+        if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, &
+            weight, tried)
     end subroutine look_at
 
     !> The traction of a rigid contact that creeps comes to balance the faster the slower it slips.
-    !> Where neither inertia nor damper has a say, it is the balance's. Else the slip rate may grow
-    !> by so much only: where the traction comes to balance far more slowly at the end of a step
-    !> than at its start, the estimate of the error sees nothing.
-    subroutine balance(block, t, tried)
+    !> Where neither inertia nor damper has a say, it is the balance's. Else, unless it is that
+    !> within the tolerated error, the slip rate may grow by so much only: where the traction comes
+    !> to balance far more slowly at the end of a step than at its start, the estimate of the error
+    !> sees nothing.
+    subroutine balance(block, t, weight, tried)
         type(moving_block), intent(in) :: block
         real(dp), intent(in) :: t             !! [T]
+        real(dp), intent(in) :: weight        !! inverse of the tolerated error of the traction's
+                                              !! elastic displacement
         type(trial), intent(inout) :: tried
         real(dp), parameter :: no_say = 1.0e-8_dp   !! part
         real(dp), parameter :: most = 3.0_dp        !! logarithm of the growth
@@ -57,7 +61,8 @@ contains
                 tried%y(elastic) = eq%stiffness * tried%y(extension) / (eq%area * eq%alpha)
                 call eq%rates(t + tried%h, tried%y, tried%last, failed)
                 if (failed) tried%error = huge(tried%error)
-            else if (after > before) then
+            else if (after > before .and. eq%mass * abs(tried%last(velocity)) * weight &
+                > eq%area * eq%alpha) then
                 tried%error = max(tried%error, (log(after / max(before, tiny(before))) / most)**4)
             end if
         end associate

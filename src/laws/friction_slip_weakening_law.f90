@@ -166,7 +166,7 @@ contains
         if (.not. load%sliding) rate = max(0.0_wp, rate)
         slope = load%stiffness - fall(self, state%r, load%pressure)
         jumps = rate > 0.0_wp .and. slope <= 0.0_wp
-        if (slope > 0.0_wp) rate = rate / slope
+        rate = rate / merge(slope, load%stiffness, slope > 0.0_wp)
     end subroutine slip_rate
 
     pure function state_rates(self, state, load, slip_rate) result(rates)

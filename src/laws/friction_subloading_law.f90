@@ -478,7 +478,7 @@ contains
         if (full > 0.0_wp) slope = slope + full * self%m * self%u_of(state%r) - state%r &
             * load%pressure * self%kappa * (state%mu - self%mu_k)
         jumps = rate > 0.0_wp .and. slope <= 0.0_wp
-        if (slope > 0.0_wp) rate = rate / slope
+        rate = rate / merge(slope, load%stiffness, slope > 0.0_wp)
     end subroutine slip_rate
 
     !> While nothing slips R is the traction's share of mu p + cohesion.
