@@ -1,13 +1,23 @@
 !> Every law with constants for tests: tests/law_constants.csv.
 module law_examples
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_law_name, friction_place
+    use friction_mod, only : friction_law_name, friction_place, law_flash_heating, &
+        law_linker_dieterich, law_rate_state
     implicit none
     private
 
-    public :: example_constants
+    public :: creeps, example_constants
 
 contains
+
+    !> Does its coefficient follow the slip rate? Such a surface slides on under what it carries,
+    !> also at rest, and `mu` of its state is for the reader.
+    pure function creeps(law)
+        integer, intent(in) :: law   !! its number
+        logical :: creeps
+
+        creeps = any(law == [law_rate_state, law_flash_heating, law_linker_dieterich])
+    end function creeps
 
     !> All constants of a law, those of options included, in the order of `props`. Tests run in
     !> tests/unit.
