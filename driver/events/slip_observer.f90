@@ -87,20 +87,50 @@ contains
         if (self%drive%listed > 1) call self%measure(old, new)
     end subroutine see
 
-    !> A step belongs to the piece that it ends in, or that ends with it.
+    !> A step belongs to the piece that it ends in, or that ends with it. The first one of a piece
+    !> gives it its start, too; but what friction is after a sudden load is seen at the step's end.
     pure subroutine measure(self, old, new)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
-        real(dp) :: force   !! mean over the blocks [F]
+        real(dp) :: aside
         integer :: i
 
         if (new%normal <= 0.0_dp) return
-        i = min(self%drive%listed, self%drive%piece(new%time - round_off * (new%time - old%time)))
-        force = sum(new%friction) / size(new%friction)
-        if (abs(force) > 0.0_dp) force = self%sense(i) * force   ! and no -0 in a table
-        call self%friction(i)%take(force / (self%area * new%normal))
+        aside = round_off * (new%time - old%time)
+        i = min(self%drive%listed, self%drive%piece(new%time - aside))
+        if (.not. self%friction(i)%seen .and. old%normal > 0.0_dp .and. old%time > &
+            self%drive%start(i) - aside) then
+            if (is_gradual(self%drive, i)) call self%friction(i)%take(over_load(old))
+        end if
+        call self%friction(i)%take(over_load(new))
+
+    contains
+
+        pure function over_load(state) result(friction)
+            type(slider_state), intent(in) :: state
+            real(dp) :: friction   !! mean over the blocks [-]
+
+            friction = sum(state%friction) / (size(state%friction) * self%area * state%normal)
+            if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
+        end function over_load
+
     end subroutine measure
+
+    !> Does a piece start with the normal traction that the one before ends with?
+    pure function is_gradual(drive, i) result(yes)
+        type(programme), intent(in) :: drive
+        integer, intent(in) :: i   !! piece
+        logical :: yes
+        real(dp), parameter :: round_off = 1.0e-12_dp   !! part
+        real(dp) :: before, after
+
+        yes = i == 1
+        if (yes) return
+        before = drive%normal_traction(drive%start(i), i - 1)
+        after = drive%normal_traction(drive%start(i), i)
+        yes = abs(after - before) <= round_off * max(before, after)
+    end function is_gradual
 
     !> What the finder looks at, as means over the blocks.
     pure function seen(self, state, sums, k, i) result(now)

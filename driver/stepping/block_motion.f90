@@ -146,7 +146,7 @@ contains
     end subroutine fill_block
 
     !> Friction coefficient as `friction_update` has it: of a surface that sticks or is open that at
-    !> rest, of one that creeps what it carries.
+    !> rest, of one that creeps what it carries, under a cap what it would carry without.
     pure function coefficient(eq, state, pressure, traction, slip_rate) result(mu)
         type(slider_equations), intent(in) :: eq
         type(law_state), intent(in) :: state
@@ -155,12 +155,14 @@ contains
         real(dp), intent(in) :: slip_rate   !! [L/T]
         real(dp) :: mu, resistance, by_rate, some
         logical :: carried
+        real(dp), parameter :: below_cap = 1.0_dp - 1.0e-9_dp   !! round-off of steps aside
 
         mu = state%mu
         if (eq%surface%traits%memory == 1) return
         ! friction that drops follows the block's velocity on a bare contact spring
         carried = eq%surface%traits%onset == onset_gradual .or. eq%surface%traits%onset &
-            == onset_drops .and. slip_rate > 0.0_dp .and. traction < eq%surface%tau_max
+            == onset_drops .and. slip_rate > 0.0_dp
+        carried = carried .and. traction < below_cap * eq%surface%tau_max
         if (carried) then
             mu = 0.0_dp
             if (pressure > 0.0_dp) mu = max(0.0_dp, traction - eq%surface%cohesion) / pressure

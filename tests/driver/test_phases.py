@@ -268,7 +268,7 @@ class Phases(Program):
         for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
                     "d_c=1, xi=0.3", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1, "
                     "tau_max=0.44", "'rate_and_state', a=0.01, b=0.005, d_c=0.1, v0=1, f0=0.5, cohesion=0.1",
-                    "'subloading', mu_s=0.5, mu_k=0.4, kappa=1, xi=0.1, m=100"):
+                    "'rate_and_state', a=0.01, b=0.005, d_c=0.1, v0=1, f0=0.5, tau_max=0.44", "'subloading', mu_s=0.5, mu_k=0.4, kappa=1, xi=0.1, m=100"):
             seen = []
             for steps, rows_at in (('rtol=1e-7', 'every=0.1'), ('dt=1e-3', 'interval=100')):
                 result = self.run_text(f"""&friction law={law}, alpha_n=100, alpha_t=100 /
@@ -282,7 +282,7 @@ class Phases(Program):
                 for adaptive, fixed in zip(*seen):   # before it slips, and open: friction that drops sticks and slips in fixed steps
                     if max(adaptive['slip'], fixed['slip']) < 1e-9 or fixed['time'] > 2.55 or 'static' not in law and fixed['time'] < 2.45:
                         self.assertAlmostEqual(adaptive['mu'], fixed['mu'], delta=5e-3, msg=fixed['time'])
-                if 'tau_max' in law:   # slides under its cap
+                if 'tau_max' in law and 'static' in law:   # slides under its cap
                     self.assertAlmostEqual(seen[0][20]['mu'], 0.4 + 0.1 * math.exp(-1), delta=0.02)
 
     def test_work_that_the_drive_gets_back_is_no_open_balance(self):

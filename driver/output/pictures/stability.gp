@@ -25,7 +25,7 @@ set key outside below
 set bmargin 9
 set tics out nomirror
 set palette defined (0 "#fde0a0", 1 "#d55e00", 2 "#5a1a00")
-set cblabel "frequency of the growing disturbance [1/".time_unit."]"
+set cblabel "frequency of the growing disturbance [1/".time_unit."]" offset 2
 if (swings) {
     set logscale cb
     stats file using (is("unstable") && column("frequency") > 0 ? column("frequency") : NaN) nooutput
