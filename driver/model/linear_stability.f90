@@ -69,6 +69,18 @@ module linear_stability
             real(dp), intent(out) :: wr(n), wi(n), vl(ldvl, n), vr(ldvr, n), work(lwork)
             integer, intent(out) :: info
         end subroutine dgeev
+
+        !> LAPACK: the units, as powers of two, in which the rows and columns of a matrix are most
+        !> alike, and the matrix in these.
+        subroutine dgebal(job, n, a, lda, ilo, ihi, scale, info)
+            import :: dp
+            implicit none
+            character(len=1), intent(in) :: job
+            integer, intent(in) :: n, lda
+            real(dp), intent(inout) :: a(lda, n)
+            real(dp), intent(out) :: scale(n)
+            integer, intent(out) :: ilo, ihi, info
+        end subroutine dgebal
     end interface
 
 contains
@@ -316,19 +328,23 @@ contains
 
     !> Eigenvalues, the largest real part first. Each is improved by its two eigenvectors: what is
     !> left of round-off is that of the matrix entry by entry, however far its numbers are apart.
+    !> Whether two have met shows in units of the states that make its entries alike.
     subroutine find_eigenvalues(jacobian, n, result)
         real(dp), intent(in) :: jacobian(most_states, most_states)
         integer, intent(in) :: n
         type(stability), intent(inout) :: result
-        real(dp) :: matrix(most_states, most_states), re(most_states), im(most_states), &
-            left(most_states, most_states), right(most_states, most_states), work(16 * most_states)
+        real(dp), dimension(most_states, most_states) :: alike, matrix, left, right
+        real(dp) :: re(most_states), im(most_states), work(16 * most_states)
         complex(dp) :: x(n), y(n), product
         integer :: info, i, first
 
         info = 1
-        matrix = jacobian
-        if (all(abs(jacobian) <= sqrt(huge(work)))) call dgeev('V', 'V', n, matrix, most_states, &
-            re, im, left, most_states, right, most_states, work, size(work), info)
+        alike = jacobian
+        if (all(abs(jacobian) <= sqrt(huge(work)))) call dgebal('S', n, alike, most_states, i, &
+            first, work, info)
+        matrix = alike
+        if (info == 0) call dgeev('V', 'V', n, matrix, most_states, re, im, left, most_states, &
+            right, most_states, work, size(work), info)
         if (info /= 0) then
             result%problem = 'the eigenvalues were not found'
             return
@@ -340,9 +356,9 @@ contains
             y = conjg(vector(left, i))
             product = sum(y * x)
             if (.not. abs(product) > 1.0e4_dp * epsilon(re)) cycle   ! two have met
-            result%eigenvalues(i) = sum(y * matmul(jacobian(:n, :n), x)) / product
+            result%eigenvalues(i) = sum(y * matmul(alike(:n, :n), x)) / product
             result%uncertain(i) = 16.0_dp * epsilon(re) * dot_product(abs(y), &
-                matmul(abs(jacobian(:n, :n)), abs(x))) / abs(product)
+                matmul(abs(alike(:n, :n)), abs(x))) / abs(product)
         end do
         do i = 1, n
             first = i - 1 + maxloc(real(result%eigenvalues(i:), dp), 1)

@@ -101,6 +101,22 @@ class OtherUnits(Program):
                   (RELOADED, in_other_units(RELOADED, (-4, -28, 0)), in_other_units(RELOADED, (32, 0, 0)))]
         self.assertEqual(counts, [8, 8, 8])
 
+    def test_stability_of_steady_sliding(self):
+        # states of an eigenvector far apart in size were taken for two eigenvectors that have met: neither stable nor unstable
+        case = """&friction law='rate_and_state', alpha_n=6900, alpha_t=43500, a=0.0207, b=0.0303, d_c=1.31e-5, v0=1.75e-3, f0=0.403 /
+            &slider mass=5.8e-7, stiffness=281, area=1.21, normal_traction=0.431 /
+            &drive velocity=5.1e-4 /
+            &time t_end=10, dt=0.01 /"""
+        stiffness = (0.0303 - 0.0207) * 0.431 * 1.21 / 1.31e-5   # of both springs, at which it is critical without inertia
+        stiffness = 1 / (1 / stiffness - 1 / (43500 * 1.21))
+        for powers in ((0, 0, 0), (20, 32, 0), (-30, 10, 0), (0, 12, 20), (0, -20, -20)):
+            result = self.run_text(in_other_units(case, powers), '--no-plot', verb='stability')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            row = self.rows('case_out/case_stability.csv')[0]
+            self.assertEqual(row['stability'], 'unstable', powers)
+            found = float(row['critical_stiffness']) / 2.0**(powers[0] - powers[1])
+            self.assertAlmostEqual(found / stiffness, 1, delta=1e-5)
+
     def test_a_rigid_contact_begins_to_creep_with_the_first_step(self):
         # its slip rate grows from 0 through all decades; steps of 1e-144 and on told nothing of it
         rows = self.tables("""&friction law='rate_and_state', alpha_n=1, alpha_t=1, a=0.05, b=0.06, d_c=0.006, v0=0.0025, f0=0.6,
