@@ -78,20 +78,21 @@ contains
         type(unloading) :: spring
         type(load) :: this
         type(place) :: here
-        logical :: capped, solved
+        logical :: capped, solved, started
 
         spring = unloading(trial, stiffness, trial / stiffness)
         this = load(pressure, dt, old)
         status = friction_ok
         capped = trial > surface%tau_max
-        if (capped) then
+        started = capped
+        if (started) then
             call find_start(surface, spring, this, here)
             capped = here%g <= 0.0_wp
         end if
         if (.not. capped) then
             call surface%solve(trial, stiffness, pressure, dt, old, answer, solved)
             if (solved) return
-            call find_start(surface, spring, this, here)
+            if (.not. started) call find_start(surface, spring, this, here)
         end if
         call return_from(surface, spring, this, here, status)
         answer = here%law
