@@ -4,7 +4,7 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import pathlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,9 @@ from .laws import Law, classes
 if TYPE_CHECKING:
     import matplotlib.figure
 
+#: What is left over, in standard deviations of the noise, at the logarithms of the constants.
+Misfit = Callable[[np.ndarray], np.ndarray]
+
 NAMES = ('a', 'b', 'd_c', 'stiffness')
 NORMAL = 1.959964
 UNDETERMINED = 0.2
@@ -26,6 +29,11 @@ STEP = 0.01           # of the constants' logarithms, for central differences
 FRICTION = 0.6        # of steady sliding in the model; the level of the record is found apart from it
 REST = 1e-6           # of the largest velocity: below it the drive stands still
 RTOL = 1e-6           # error in a step, part of the friction
+BEST = 4              # starting points from which least squares go on
+STRAIGHT = 0.03       # standard deviation of a logarithm up to which slopes tell the interval
+FIRST = 0.1           # step of a logarithm on the way to the end of an interval, at most
+WAY = 12              # steps to the end of an interval, at most
+CLOSE = 0.1           # standard deviations to which the end of an interval is found
 MOST_LAGS = 1000      # samples over which what is left over is looked at for lasting
 
 
@@ -34,7 +42,7 @@ class RateStateFit:
     """What `fit_rate_and_state` found; lengths and times in the units of the record."""
 
     values: dict[str, float]                    #: a, b [-], d_c [L], stiffness [1/L], of friction against displacement
-    intervals: dict[str, tuple[float, float]]   #: 95 % intervals
+    intervals: dict[str, tuple[float, float]]   #: 95 % intervals, also of 'a - b'; 0 or infinite where the record tells no end
     correlation: np.ndarray                     #: of the constants' logarithms, in the order of `values`
     undetermined: list[str]                     #: constants that the record does not determine
     warnings: list[str]
@@ -50,12 +58,11 @@ class RateStateFit:
 
     def __str__(self) -> str:
         lines = []
-        for name, value in self.values.items():
+        for name, value in {**self.values, 'a - b': self.values['a'] - self.values['b']}.items():
             low, high = self.intervals[name]
             remark = '   not determined by this record' if name in self.undetermined else ''
             lines.append(f'{name:10s} {value:10.4g}   95 % interval {low:.4g} to {high:.4g}{remark}')
-        a_b = self.values['a'] - self.values['b']
-        return '\n'.join([*lines, f'{"a - b":10s} {a_b:10.4g}', *(f'warning: {warning}' for warning in self.warnings)])
+        return '\n'.join([*lines, *(f'warning: {warning}' for warning in self.warnings)])
 
     def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
         """Draws record and model, and what is left over. path: where to save the picture. Gives the figure."""
@@ -84,7 +91,7 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: ArrayLi
     displacement: of the load point, at the same times [L]: gives the velocities, and the changes to a part of a sample
         (where the straight lines of two pieces meet); or
     velocity: of each piece, one more than changes [L/T]; 0 is a hold.
-    bounds: of a, b [-], d_c [L], stiffness [1/L], by name; the others are taken from the record.
+    bounds: of a, b [-], d_c [L], stiffness [1/L], by name, 0 < lower < upper; the others are taken from the record, far apart.
     evolution: 'ageing' or 'slip' law.
     seed, starts: of the starting points, a Sobol sequence within the bounds; a power of 2.
 
@@ -115,11 +122,11 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: ArrayLi
 
     points = qmc.scale(qmc.Sobol(low.size, seed=seed).random(starts), low, high)
     best = None
-    for point in points[np.argsort([np.sum(misfit(point)**2) for point in points])[:3]]:
+    for point in points[np.argsort([np.sum(misfit(point)**2) for point in points])[:BEST]]:
         found = least_squares(misfit, point, jacobian, bounds=(low, high), x_scale=0.3, max_nfev=40)
         if best is None or found.cost < best.cost:
             best = found
-    return _assess(record, best.x, misfit(best.x), jacobian(best.x), limits, evolution)
+    return _assess(record, best.x, misfit, jacobian(best.x), limits, frozenset(bounds or {}), evolution)
 
 
 NO_RUN = ('no constants within the bounds give a run that ends: where the spring is softer than friction weakens, sliding without mass is '
@@ -153,8 +160,9 @@ class _Steps:
         speed = self.velocity.max()
         # Samples may be denser around the changes; at random times, single ones are as near to one another as can be.
         shortest = speed * float(np.percentile(np.diff(self.time), 5))
-        longest = speed * (self.time[-1] - self.time[0]) / 5.0
-        return {'a': (1e-4, 0.1), 'b': (1e-4, 0.1), 'd_c': (shortest, longest), 'stiffness': (0.01 / longest, 1.0 / shortest)}
+        longest = speed * float(self.time[-1] - self.time[0])
+        # What lies far beyond what the record can tell makes no difference there, but a bound that is too near does elsewhere.
+        return {'a': (1e-4, 0.1), 'b': (1e-4, 0.1), 'd_c': (0.03 * shortest, 3.0 * longest), 'stiffness': (0.05 / longest, 100.0 / shortest)}
 
     def model(self, constants: np.ndarray, evolution: str) -> np.ndarray | None:
         """Friction of the model at the record's times, but for level and trend; None where its run fails."""
@@ -255,9 +263,11 @@ def _lines(time: np.ndarray, displacement: np.ndarray, edges: np.ndarray) -> tup
     return np.array(meet), velocity
 
 
-def _assess(record: _Steps, at: np.ndarray, misfit: np.ndarray, slope: np.ndarray, limits: Mapping[str, tuple[float, float]],
-            evolution: str) -> RateStateFit:
-    """Errors from the slope and from sums of what is left over in blocks, which are as good as independent."""
+def _assess(record: _Steps, at: np.ndarray, misfit_at: Misfit, slope: np.ndarray, limits: Mapping[str, tuple[float, float]],
+            given: frozenset[str], evolution: str) -> RateStateFit:
+    """Errors from the slope and from sums of what is left over in blocks, which are as good as independent; where they are large,
+    from the way along the valley. given: the names of the bounds that are the caller's."""
+    misfit = misfit_at(at)
     inverse = np.linalg.pinv(slope.T @ slope, rcond=1e-12)
     blocks = np.array_split(np.arange(misfit.size), max(10, round(np.sqrt(misfit.size))))
     pulls = np.array([slope[block].T @ misfit[block] for block in blocks])
@@ -265,9 +275,16 @@ def _assess(record: _Steps, at: np.ndarray, misfit: np.ndarray, slope: np.ndarra
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     deviation = np.sqrt(np.max([spread**2, np.diag(inverse), np.diag(inverse @ (pulls.T @ pulls) @ inverse)], axis=0))
     covariance *= np.outer(deviation / spread, deviation / spread)
+    ends = np.array([at - NORMAL * deviation, at + NORMAL * deviation])
+    if deviation.max() > STRAIGHT:
+        ends = np.array([_valley(misfit_at, at, side * NORMAL * deviation, np.sqrt(np.diag(inverse)) / deviation, limits, given)
+                         for side in (-1.0, 1.0)])
     with np.errstate(over='ignore'):   # of what is not determined at all
-        intervals = {name: (float(np.exp(x - NORMAL * s)), float(np.exp(x + NORMAL * s)))
-                     for name, x, s in zip(NAMES, at, deviation)}
+        intervals = {name: (float(np.exp(low)), float(np.exp(high))) for name, low, high in zip(NAMES, *ends)}
+        widths = (ends[1] - ends[0]) / (2.0 * NORMAL)
+        a, b = np.exp(at[:2])
+        off = NORMAL * np.sqrt(max(0.0, np.array([a, -b]) @ covariance[:2, :2] @ np.array([a, -b])))
+        intervals['a - b'] = (float(a - b - off), float(a - b + off))
     warnings = [f'{name} ends at its bound' for name, x in zip(NAMES, at)
                 if min(x - np.log(limits[name][0]), np.log(limits[name][1]) - x) < 1e-3]
     rms = float(np.sqrt(np.mean(misfit**2)))
@@ -279,8 +296,47 @@ def _assess(record: _Steps, at: np.ndarray, misfit: np.ndarray, slope: np.ndarra
         raise ValueError(NO_RUN)
     model = record.sense * record.with_trend(computed)
     return RateStateFit(dict(zip(NAMES, np.exp(at).tolist())), intervals, covariance / np.outer(deviation, deviation),
-                        [name for name, s in zip(NAMES, deviation) if not s <= UNDETERMINED], warnings, rms,
+                        [name for name, s in zip(NAMES, widths) if not s <= UNDETERMINED], warnings, rms,
                         record.time, record.sense * record.friction, model)
+
+
+def _valley(misfit: Misfit, at: np.ndarray, first: np.ndarray, shares: np.ndarray, limits: Mapping[str, tuple[float, float]],
+            given: frozenset[str]) -> np.ndarray:
+    """How far each constant may go to one side until the misfit, with the others found anew, has risen by `NORMAL` standard
+    deviations: slopes tell nothing of a valley that is flat to one side, as that of a rig that is stiff enough. Without an end
+    within the default bounds there is none. first: where to look first, from `at`; shares: errors of white noise over those of
+    the noise there is."""
+    least_squares = needed('scipy.optimize', 'fit').least_squares
+    low, high = np.log([limits[name] for name in NAMES]).T
+    lowest, ends = float(misfit(at) @ misfit(at)), np.empty_like(at)
+    for i, name in enumerate(NAMES):
+        others = np.arange(at.size) != i
+
+        def held(part: np.ndarray, value: float, i: int = i) -> np.ndarray:
+            return misfit(np.insert(part, i, value))
+
+        inside, outside = (0.0, 0.0, at[others]), (np.inf, np.inf)   # step, rise of the misfit; the others there
+        step = np.clip(first[i], -FIRST, FIRST)
+        for _ in range(WAY):
+            value = float(np.clip(at[i] + step, low[i], high[i]))
+            found = least_squares(held, np.clip(inside[2], low[others] + 1e-9, high[others] - 1e-9), args=(value,), x_scale=0.3,
+                                  bounds=(low[others], high[others]), diff_step=STEP, max_nfev=10)
+            risen = np.sqrt(max(0.0, 2.0 * found.cost - lowest)) * shares[i]
+            if risen < NORMAL:
+                inside = (value - at[i], risen, found.x)
+            else:
+                outside = (value - at[i], risen)
+            at_bound = value in (low[i], high[i])
+            if abs(risen - NORMAL) < CLOSE or at_bound and risen < NORMAL:
+                break
+            if np.isinf(outside[0]):
+                step = inside[0] * np.clip(NORMAL / max(risen, 1e-3), 1.3, 3.0)
+            else:
+                part = (NORMAL - inside[1]) / (outside[1] - inside[1])
+                step = inside[0] + (outside[0] - inside[0]) * np.clip(part, 0.1, 0.9)
+        is_open = at_bound and risen < NORMAL and name not in given
+        ends[i] = np.copysign(np.inf, first[i]) if is_open else value
+    return ends
 
 
 def _lasting(slope: np.ndarray, misfit: np.ndarray) -> np.ndarray:

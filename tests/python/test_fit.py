@@ -570,10 +570,10 @@ class RateAndState(unittest.TestCase):
     TIME, CHANGES, VELOCITY = np.arange(0.0, 130.0, 0.1), np.array([40.0, 80.0]), np.array([3.0, 10.0, 3.0])
     TRUE = {'a': 0.01, 'b': 0.014, 'd_c': 5.0, 'stiffness': 0.02}
 
-    def independent(self, t, changes, velocity, evolution='ageing'):
+    def independent(self, t, changes, velocity, evolution='ageing', true=None):
         """Friction by scipy's solver: d(friction)/dt = k (v - V), friction = f0 + a ln(V/v0) + b ln(theta v0/d_c)."""
         from scipy.integrate import solve_ivp
-        a, b, d_c, stiffness = self.TRUE.values()
+        a, b, d_c, stiffness = (true or self.TRUE).values()
         found, state = np.empty_like(t), [0.6, np.log(d_c / velocity[0])]
         for begin, end, drive in zip([t[0], *changes], [*changes, t[-1]], velocity):
             def rates(_, y, drive=drive):
@@ -610,6 +610,26 @@ class RateAndState(unittest.TestCase):
             self.assertLess(np.sqrt(np.mean(np.square(off))), 1.4, part)
             self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.6, part)
 
+    def test_intervals_of_what_a_record_does_not_tell_are_open(self):
+        """A rig that is too stiff for its stiffness to show, a record too coarse for d_c, a state that evolves over more than the
+        record slips: bounds that are too near, and slopes in valleys that are flat to one side, gave other constants wrongly, up
+        to 25 standard deviations."""
+        coarse = np.arange(0.0, 130.0, 2.0)
+        for t, true, undetermined in ((self.TIME, {**self.TRUE, 'stiffness': 5.0}, {'stiffness'}), (coarse, self.TRUE, {'a', 'b'}),
+                                      (self.TIME, {**self.TRUE, 'd_c': 300.0}, set())):
+            clean = self.independent(t, self.CHANGES, self.VELOCITY, true=true)
+            for seed in range(2):
+                noisy = clean + 2e-4 * np.random.default_rng(seed).normal(size=t.size)
+                found = stickslip.fit_rate_and_state(t, noisy, changes=self.CHANGES, velocity=self.VELOCITY, starts=16)
+                self.assertLessEqual(undetermined, set(found.undetermined), found)
+                for name, value in true.items():
+                    low, high = found.intervals[name]
+                    self.assertGreater(value, low * (low / found.values[name])**0.3, f'{name}: {found}')
+                    self.assertLess(value, high * (high / found.values[name])**0.3, f'{name}: {found}')
+                if 'stiffness' in undetermined:
+                    self.assertEqual(found.intervals['stiffness'][1], np.inf)
+                    self.assertLess(found.intervals['a'][1], 1.2 * true['a'])   # which it tells
+
     def test_records_at_random_times_are_fitted(self):
         """Two of their samples may be as near to one another as can be, which says nothing about d_c."""
         draw = np.random.default_rng(5)
@@ -619,7 +639,8 @@ class RateAndState(unittest.TestCase):
         for name, true in self.TRUE.items():
             low, high = found.intervals[name]
             self.assertLess(abs(np.log(found.values[name] / true)), 1.3 * 0.5 * np.log(high / low), f'{name}: {found}')
-            self.assertLess(high / low, 1.6, name)
+            # the stiffness shows in the samples right after a change alone: there are few
+            self.assertLess(high / low, 2.0 if name == 'stiffness' else 1.3, name)
 
     def test_other_units_and_a_rig_that_goes_backwards_give_the_same(self):
         friction = self.independent(self.TIME, self.CHANGES, self.VELOCITY) + 2e-4 * np.random.default_rng(1).normal(
