@@ -27,9 +27,9 @@ there is: a constant friction force, so that it goes on in half waves, `K e = c 
         strength(library, report, name, props, mu)
     pulled_without_pressure(program, report)
     report.section('A damper beside the contact spring', """
-`T = alpha_t u_e + eta_t u_e'` (theory.md 16). A block that sticks is a damped oscillator; dragged faster than `mu p/eta_t` from rest, the damper carries what friction lets it, while
-the spring takes over; a block under static-kinetic friction rings down after its jump, where scipy's Radau integrates velocity, spring and contact with the slip rate as the root
-of a balance.""")
+`T = alpha_t u_e + eta_t u_e'` (theory.md 16). A block that sticks is a damped oscillator; dragged faster than `mu p/eta_t` from rest, the damper
+carries what friction lets it, while the spring takes over; a block under static-kinetic friction rings down after its jump, where scipy's Radau
+integrates velocity, spring and contact with the slip rate as the root of a balance.""")
     stuck(program, report)
     dragged(library, report)
     ringing(program, report)

@@ -58,8 +58,9 @@ def reference(evolution, track, times, method='LSODA'):
 def validate(program, report):
     report.section('Rate-and-state friction on a spring', f"""
 Quasi-static (`mass = 0`), `f0 = {F0}`, `a = {A}`, `b = {B}`, `d_c = {D_C:g}` um, stiffness of the normal traction {STIFFNESS['ageing']:g}/um
-with the ageing law, {STIFFNESS['slip']:g}/um with the slip law (the critical one is {(B - A) / D_C:g}); the contact spring ({CONTACT:g}/um) counts in series. The whole history, from a slack spring on, is solved as two ordinary
-differential equations by scipy's LSODA at a tolerance of 1e-11. Differences are in the friction coefficient, and the largest of the whole run.""")
+with the ageing law, {STIFFNESS['slip']:g}/um with the slip law (the critical one is {(B - A) / D_C:g}); the contact spring ({CONTACT:g}/um) counts in series. The whole history, from
+a slack spring on, is solved as two ordinary differential equations by scipy's LSODA at a tolerance of 1e-11. Differences are in the friction
+coefficient, and the largest of the whole run.""")
     figure, axes = plot.subplots(2, 2, figsize=(12, 7), sharey='row')
     checked = False
     for row, track in enumerate(TRACKS):
