@@ -155,15 +155,21 @@ contains
         read_in%lines = read_in%lines(:rows)
     end subroutine take_text
 
-    !> Empty, or a comment.
+    !> Empty, or a comment: not a row whose first cell spreadsheets could not compute.
     pure function is_no_row(line) result(yes)
         character(len=*), intent(in) :: line
         logical :: yes
-        integer :: i
+        character(len=7), parameter :: not_computed(7) = [character(len=7) :: '#N/A', '#DIV/0!', &
+            '#VALUE!', '#REF!', '#NAME?', '#NUM!', '#NULL!']
+        integer :: i, k
 
         i = verify(line, ' ' // tab)
         yes = i == 0
-        if (.not. yes) yes = scan(line(i:i), '#%') > 0
+        if (yes) return
+        yes = scan(line(i:i), '#%') > 0
+        do k = 1, size(not_computed)
+            yes = yes .and. index(line(i:), trim(not_computed(k))) /= 1
+        end do
     end function is_no_row
 
     ! ---- the line of names -------------------------------------------------------------------

@@ -909,6 +909,8 @@ class BadProgramme(Columns):
                 ('time;velocity\n0;0\n1;1.000,5\n', "line 3: velocity = '1.000,5': has a decimal point and a comma"),
                 ('time,velocity\n0,1\n1,1 mm/s\n', "line 3: velocity = '1 mm/s': must be a finite number"),
                 ('time,velocity\n0,1\n1,2\ntime,velocity\n0,1\n', "line 4: time = 'time': must be a finite number"),
+                ('velocity,time\n1,0\n#N/A,1\n2,2\n', "line 3: velocity = '#N/A': must be a finite number"),
+                ('velocity;time\n1;0\n1;1\n #DIV/0!;2\n', "line 4: velocity = '#DIV/0!': must be a finite number"),
                 ('time,velocity\n0,1\n1,fast\n', "line 3: velocity = 'fast': must be a finite number"),
                 ('time,velocity\n0,1\nNaN,1\n', "line 3: time = 'NaN': must be a finite number"),
                 ('time,velocity\n0,1\n1,1e999\n', "line 3: velocity = '1e999'"),
