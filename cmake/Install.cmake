@@ -32,6 +32,15 @@ if(linker STREQUAL "Fortran")   # and so are the compiler's own libraries, but f
     list(REMOVE_ITEM libraries_behind gcc gcc_s c m -lm)
     list(REMOVE_DUPLICATES libraries_behind)
     list(APPEND libraries_behind -lm)   # what the others call
+    foreach(folder IN LISTS CMAKE_Fortran_IMPLICIT_LINK_DIRECTORIES)   # a user's C compiler may not look there
+        foreach(library IN LISTS CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES)
+            file(GLOB found ${folder}/lib${library}.*)
+            if(found AND NOT library MATCHES "^(gcc|gcc_s|c|m)$")
+                list(PREPEND libraries_behind -L${folder})
+            endif()
+        endforeach()
+    endforeach()
+    list(REMOVE_DUPLICATES libraries_behind)
 endif()
 list(TRANSFORM libraries_behind PREPEND -l REGEX "^[^-/]")
 list(JOIN libraries_behind " " libraries_behind)
