@@ -211,6 +211,7 @@ class Run(unittest.TestCase):
 import stickslip
 from stickslip import _namelist
 groups = _namelist.groups_of(sys.stdin.read())
+signal.signal(signal.SIGINT, signal.default_int_handler)   # it is ignored in what a shell starts in the background
 def press(wait):
     while threading.active_count() < 3:   # main, this one, the run
         time.sleep(0.001)
