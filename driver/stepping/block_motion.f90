@@ -122,14 +122,15 @@ contains
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new  !! its time and drive are given
         type(law_state) :: state
-        real(dp) :: pressure
+        real(dp) :: pressure, traction   !! [F/L^2]
 
         ! what accumulates never falls, not even by round-off
         y(slip) = max(y(slip), old%statev(i, statev_slip))
         y(dissipated) = max(y(dissipated), old%statev(i, statev_dissipation))
         new%x(i) = new%drive - y(extension)
         new%spring(i) = eq%stiffness * y(extension)
-        new%friction(i) = eq%area * eq%traction(t, y)
+        traction = eq%traction(t, y)
+        new%friction(i) = eq%area * traction
         new%v(i) = y(velocity)
         new%a(i) = dy(velocity)
         pressure = merge(0.0_dp, max(normal, eq%least_pressure), eq%phase == phase_open)
@@ -139,8 +140,7 @@ contains
             dy(slip) > 0.0_dp)
         new%statev(i, statev_u_et) = merge(0.0_dp, y(elastic), eq%rigid)
         new%statev(i, statev_r) = state%r
-        new%statev(i, statev_mu) = coefficient(eq, state, pressure, abs(eq%traction(t, y)), &
-            dy(slip))
+        new%statev(i, statev_mu) = coefficient(eq, state, pressure, abs(traction), dy(slip))
         new%statev(i, statev_slip) = y(slip)
         new%statev(i, statev_dissipation) = y(dissipated)
     end subroutine fill_block
