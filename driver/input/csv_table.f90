@@ -167,9 +167,8 @@ contains
         yes = i == 0
         if (yes) return
         yes = scan(line(i:i), '#%') > 0
-        do k = 1, size(not_computed)
-            yes = yes .and. index(line(i:), trim(not_computed(k))) /= 1
-        end do
+        if (yes) yes = all([(index(line(i:), trim(not_computed(k))) /= 1, k = 1, &
+            size(not_computed))])
     end function is_no_row
 
     ! ---- the line of names -------------------------------------------------------------------

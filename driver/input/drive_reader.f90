@@ -92,13 +92,8 @@ contains
         drive%velocity = velocity
         drive%normal = normal
         drive%normal_rate = 0.0_dp * normal
-        if (change == 'ramp' .and. size(duration) == n) then
-            call make_ramps(duration, drive)
-            if (file%given('slider', 'normal_traction')) then
-                drive%normal(1) = normal_traction
-                drive%normal_rate(1) = (drive%normal(2) - normal_traction) / duration(1)
-            end if
-        end if
+        if (change == 'ramp') call make_ramps(merge(normal_traction, normal(1), &
+            file%given('slider', 'normal_traction')), duration, drive)
         drive%acceleration = 0.0_dp * drive%velocity
         call drive%add_up_travel()
 
@@ -115,9 +110,10 @@ contains
 
     end subroutine read_drive_lists
 
-    !> Each piece starts at the normal traction of the one before, the first at its own, and ends at
-    !> its own; another one then holds the last.
-    subroutine make_ramps(duration, drive)
+    !> Each piece starts at the normal traction of the one before, and ends at its own; another one
+    !> then holds the last.
+    subroutine make_ramps(first, duration, drive)
+        real(dp), intent(in) :: first            !! normal traction at time 0 [F/L^2]
         real(dp), intent(in) :: duration(:)      !! [T]
         type(programme), intent(inout) :: drive
         real(dp) :: target(size(duration))
@@ -125,7 +121,7 @@ contains
 
         n = size(duration)
         target = drive%normal
-        drive%normal(2:) = target(:n - 1)
+        drive%normal = [first, target(:n - 1)]
         drive%normal_rate = (target - drive%normal) / duration
         drive%start = [drive%start, drive%start(n) + duration(n)]
         drive%velocity = [drive%velocity, drive%velocity(n)]

@@ -100,7 +100,8 @@ contains
 
         call self%method%step(self%system, self%origin + self%drive%position(time), &
             self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
-        if (report%status >= 0) call account(self%system, self%sums(old, new), old, new)
+        if (report%status >= 0) call account(self%system, self%method%sums(self%system, old, new), &
+            old, new)
         new%time = time
         call self%count_iterations(report%iterations)
     end subroutine try

@@ -162,9 +162,7 @@ def _check_out(out: Result, order: str, n: int, ndir: int) -> None:
     _require_result(out)
     shapes = {'traction': (n, ndir), 'tangent': (n, ndir, ndir), 'state': (n, STATE_SIZE), 'status': (n,)}
     for name, shape in shapes.items():
-        array = getattr(out, name)
-        if not isinstance(array, np.ndarray):
-            raise TypeError(f'out.{name}: an array is needed, not {array!r}')
+        array = _array_of(out, name)
         kind = np.int32 if name == 'status' else np.float64
         lies = array.flags.c_contiguous if order == 'C' else array.flags.f_contiguous
         if array.shape != shape or array.dtype != kind or not lies or not array.flags.writeable:
@@ -179,13 +177,18 @@ def _require_result(out: Any) -> None:
         raise TypeError(f'out: an earlier result is needed, not {out!r}')
 
 
+def _array_of(out: Result, name: str) -> np.ndarray:
+    array = getattr(out, name)
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f'out.{name}: an array is needed, not {array!r}')
+    return array
+
+
 def _copy_to(out: Result, result: Result) -> Result:
     """The result of one point in the arrays of an earlier one."""
     _require_result(out)
     for name in ('traction', 'tangent', 'state'):
-        array, shape = getattr(out, name), getattr(result, name).shape
-        if not isinstance(array, np.ndarray):
-            raise TypeError(f'out.{name}: an array is needed, not {array!r}')
+        array, shape = _array_of(out, name), getattr(result, name).shape
         if array.shape != shape or array.dtype != _FLOAT or not array.flags.writeable:
             raise ValueError(f'out.{name}: an array of shape {shape}, float64, that can be written is needed')
     for name in ('traction', 'tangent', 'state'):

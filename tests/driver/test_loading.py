@@ -295,57 +295,6 @@ class Opening(Columns):
             self.assertAlmostEqual(run['friction_force'][-1], 0.2, delta=1e-9)
 
 
-class Units(Columns):
-    """The same slider in other units of force, length and time, powers of two, has the same motion to the last bit."""
-    units = {'alpha_n': (1, -3, 0), 'alpha_t': (1, -3, 0), 'kappa': (0, -1, 0), 'xi': (0, 0, -1), 'm': (0, -1, 0),
-             'cohesion': (1, -2, 0), 'tau_max': (1, -2, 0), 'eta_t': (1, -3, 1), 'mass': (1, -1, 2), 'stiffness': (1, -1, 0),
-             'damping': (1, -1, 1), 'area': (0, 2, 0), 'normal_traction': (1, -2, 0), 'velocity': (0, 1, -1),
-             'duration': (0, 0, 1), 't_end': (0, 0, 1), 'dt': (0, 0, 1), 'normal_amplitude': (1, -2, 0),
-             'normal_frequency': (0, 0, -1), 'd_c': (0, 1, 0)}
-    columns = {'time': (0, 0, 1), 'drive': (0, 1, 0), 'displacement': (0, 1, 0), 'velocity': (0, 1, -1),
-               'acceleration': (0, 1, -2), 'spring_force': (1, 0, 0), 'friction_force': (1, 0, 0), 'mu': (0, 0, 0),
-               'R': (0, 0, 0), 'D': (0, 1, 0), 'slip': (0, 1, 0), 'normal_traction': (1, -2, 0)}
-    events = {'onset': (0, 0, 1), 'duration': (0, 0, 1), 'stress_drop': (1, -2, 0), 'slip': (0, 1, 0),
-              'peak_velocity': (0, 1, -1), 'recurrence_time': (0, 0, 1)}
-    cases = (
-        ({'law': "'coulomb'", 'mu': 0.5, 'cohesion': 0.25}, {'normal_amplitude': 1.25, 'normal_frequency': 0.3}, {'dt': 2e-3}),
-        ({'mu_s': 0.6, 'mu_k': 0.4, 'kappa': 10, 'xi': 0.3, 'm': 100}, {}, {'dt': 1e-2}),
-        ({'mu_s': 0.6, 'mu_k': 0.4, 'kappa': 10, 'xi': 0.3, 'm': 100, 'tau_max': 0.55, 'eta_t': 0.1}, {}, {'dt': 2e-3}),
-        ({'law': "'slip_weakening_healing'", 'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.02, 'xi': 0.15}, {}, {'dt': 1e-3}),
-        ({'law': "'slip_weakening_healing'", 'mu_s': 0.7, 'mu_k': 0.3, 'd_c': 0.2, 'xi': 0.15},
-         {'normal_amplitude': 0.5, 'normal_frequency': 0.3}, {'rtol': 1e-5}),
-        # stiff: steps of Rodas4
-        ({'mu_s': 0.6, 'mu_k': 0.3, 'kappa': 85, 'xi': 9.2, 'm': 29, 'alpha_t': 134, 'scheme': "'exact_rate'"}, {'velocity': 0.01},
-         {'t_end': 44, 'rtol': 7e-5}, {'mass': 2e-4, 'stiffness': 1.1, 'damping': 5e-3, 'normal_traction': 0.2}))
-
-    def test_scaled_runs_are_the_same(self):
-        for friction, drive, steps, *slider in self.cases:
-            groups = {'friction': {'alpha_n': 50, 'alpha_t': 300, **friction},
-                      'slider': {'mass': 0.01, 'stiffness': 1, 'damping': 0.02, 'area': 1, 'normal_traction': 1,
-                                 **(slider[0] if slider else {})},
-                      'drive': {'velocity': 0.3, **drive}, 'time': {'t_end': 8, **steps}}
-            with self.subTest(friction=friction):
-                first = self.tables(groups, (0, 0, 0))
-                self.assertGreater(len(first[0]), 500)
-                for shift in ((11, -7, 5), (-20, 24, -17)):
-                    for table, other in zip(first, self.tables(groups, shift)):
-                        self.assertTrue(table == other, shift)   # a difference of long lists would take hours to print
-
-    def tables(self, groups, shift):
-        """Series and events of a run in units of 2^-shift, in the old units."""
-        def exponent(unit):
-            return sum(map(lambda power, by: power * by, unit, shift))
-
-        def number(key, value):
-            return value if isinstance(value, str) else repr(math.ldexp(value, exponent(self.units.get(key, (0, 0, 0)))))
-        self.assert_done(self.run_text(''.join(
-            f'&{group}\n' + ''.join(f'{key} = {number(key, value)}\n' for key, value in keys.items()) + '/\n'
-            for group, keys in groups.items()), '--no-plot'))
-        return [[[key, math.ldexp(float(value), -exponent(units[key]))] for row in self.rows(f'case_out/{name}')
-                 for key, value in row.items() if value != 'NaN'] for name, units in
-                (('case.csv', self.columns), ('case_events.csv', self.events))]
-
-
 RADAU_ONSETS = (37847148.4, 322538406.0, 606768808.0, 890999216.0, 1175229620.0, 1459460030.0, 1743690430.0, 2027920840.0,
                 2312151250.0, 2596381650.0, 2880612060.0)
 
