@@ -134,7 +134,7 @@ contains
         self%rate = state%rate
         self%resolved = 0.5_dp * max(here%cohesive_length, here%plan%dz()) / here%plan%wave_speed
         self%force_scale = together%largest(maxval(here%pressure))
-        if (.not. state%dt > 0.0_dp) state%dt = 1.0e-9_dp * here%plan%t_end
+        if (.not. state%dt > 0.0_dp) state%dt = self%resolved
     end subroutine begin
 
     !> One step of `state%dt` or less. Not sound: no step is short enough.

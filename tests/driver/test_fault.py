@@ -401,6 +401,16 @@ class Output(FaultTest):
 
 
 class Laws(FaultTest):
+    def test_a_longer_run_begins_with_the_shorter_one(self):
+        """Explicit and implicit steps: t_end has no say in steps before the last ones."""
+        for text, ends in ((SMALL, (4e9, 8e9)), (SUBLOADING.replace('nz = 96', 'nz = 32'), (4e9, 6e9))):
+            tables = []
+            for end in ends:
+                self.run_fault(self.write(text.replace('1.0e10', str(end)).replace('1.5e10', str(end))), '--quiet')
+                tables.append([row for time, row in self.rows('case_out/case_global.csv').items() if time < 0.8 * ends[0]])
+            self.assertGreater(len(tables[0]), 20)
+            self.assertTrue(tables[0] == tables[1])
+
     def test_subloading_friction_gives_earthquakes(self):
         """The first one after 454 years, as an independent trial code has it with other steps (docs/fault.md)."""
         name = self.write(SUBLOADING)
