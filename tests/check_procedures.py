@@ -47,7 +47,6 @@ EXCEPTIONS = {
     ('tests/unit/calculix_calls.f90', '*'): HOST,
     ('tests/unit/kratos_calls.f90', '*'): HOST,
     ('driver/model/linear_stability.f90', 'dgeev'): LAPACK,
-    ('driver/stepping/rosenbrock.f90', 'dgetrs'): LAPACK,
     ('tests/unit/test_linear_stability.pf', 'dgeev'): LAPACK,
     ('src/friction_c.f90', '*'): C,
     ('src/friction_mod.f90', 'friction_update_frame'): PUBLISHED,

@@ -48,9 +48,11 @@ contains
                 100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
         end associate
         law = friction_facts(run%props)
-        if (run%adaptive .and. run%across%free() .and. law%traits%onset == onset_drops) then
-            ! adaptive ones come to ones in which the contact sticks and slips many times
-            text = trim(text) // ' fixed steps (dt), for friction that drops at once'
+        if (run%adaptive .and. run%across%free() .and. run%newmark .and. law%traits%onset &
+            == onset_drops) then
+            ! those come to ones in which the contact sticks and slips many times
+            text = trim(text) // ' adaptive steps (rtol) without beta, gamma and rho_infinity, for &
+                &friction that drops at once'
         else if (run%adaptive) then
             text = trim(text) // ' a smaller rtol'
         else

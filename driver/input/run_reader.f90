@@ -311,7 +311,7 @@ contains
         law = friction_facts(run%props)
         run%order = max(1, law%order)
         run%newmark = any([file%given(group, 'beta'), file%given(group, 'gamma'), &
-            file%given(group, 'rho_infinity'), run%across%free()])
+            file%given(group, 'rho_infinity')])
     end subroutine read_adaptive
 
     !> A damper beside the contact spring, with adaptive steps.
@@ -326,8 +326,8 @@ contains
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
         if (run%newmark .or. .not. run%one_by_itself()) then
-            call file%reject(group, key, 'needs fixed steps (&time dt) of a chain, of a block ' &
-                // 'that moves across the interface, and with beta, gamma or rho_infinity')
+            call file%reject(group, key, 'needs fixed steps (&time dt) of a chain, and with ' &
+                // 'beta, gamma or rho_infinity')
         else if (law%damping <= law%rate_weakening * run%drive%largest_normal()) then
             call file%reject(group, key, 'must exceed d_c (mu_s - mu_k) normal_traction with ' &
                 // 'adaptive steps (&time rtol), or the contact sticks and slips without end')
@@ -374,7 +374,7 @@ contains
         if (.not. run%rigid_contact) return
         if (.not. run%adaptive .or. run%newmark .or. .not. run%one_by_itself()) call file%reject( &
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
-            // 'rho_infinity, that does not move across the interface (normal_mass)')
+            // 'rho_infinity')
         if (.not. allocated(run%props)) return
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')

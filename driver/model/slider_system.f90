@@ -33,7 +33,7 @@ module slider_system
                                          !! [F/L]
         real(dp) :: rest = 0.0_dp        !! place at which that spring pulls nowhere [L]
     contains
-        procedure :: free
+        procedure :: free, force
     end type normal_motion
 
     !> What does not change during a run.
@@ -110,6 +110,17 @@ contains
         yes = self%mass > 0.0_dp
     end function free
 
+    !> Force of drive spring and damper away from the base.
+    pure function force(self, stretch, u_n, v_n)
+        class(normal_motion), intent(in) :: self
+        real(dp), intent(in) :: stretch   !! of the drive spring along the interface [L]
+        real(dp), intent(in) :: u_n       !! [L]
+        real(dp), intent(in) :: v_n       !! [L/T]
+        real(dp) :: force                 !! [F]
+
+        force = self%tilt * stretch - self%stiffness * (u_n - self%rest) - self%damping * v_n
+    end function force
+
     !> Force of the drive spring along the interface, of a block at x that stands at u_n.
     elemental function pull(self, drive, x, u_n) result(force)
         class(slider), intent(in) :: self
@@ -129,8 +140,7 @@ contains
         real(dp), intent(in) :: v_n         !! [L/T]
         real(dp) :: force                   !! [F]
 
-        force = self%across%tilt * (drive - x) - self%across%stiffness * (u_n - self%across%rest) &
-            - self%across%damping * v_n - self%area * load
+        force = self%across%force(drive - x, u_n, v_n) - self%area * load
     end function push
 
     !> Pressure in a contact that stands at u_n.

@@ -2,12 +2,12 @@
 module block_motion
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : facts => law_facts, friction_facts, law_state, onset_drops, &
-        onset_gradual, prop_alpha_t, read_surface, statev_dissipation, statev_mu, statev_r, &
-        statev_slip, statev_status, statev_u_et
+        onset_gradual, prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, &
+        statev_r, statev_slip, statev_status, statev_u_et, statev_u_n
     use law_facts, only : typical_strength
     use run_settings, only : settings
-    use slider_rates, only : controlled, damped, dissipated, drive_work, elastic, extension, &
-        memory, phase_open, ratio, slider_equations, slip, unknowns, velocity
+    use slider_rates, only : along, away, controlled, damped, dissipated, drive_work, elastic, &
+        extension, memory, phase_open, place, ratio, slider_equations, slip, unknowns, velocity
     use slider_system, only : slider_state
     implicit none
     private
@@ -36,7 +36,7 @@ contains
         real(dp), intent(out) :: natural(controlled)
         !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
         !> what the law remembers, how many steps are taken by the contact spring.
-        real(dp), parameter :: stiff_sizes(controlled) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        real(dp), parameter :: stiff_sizes(along) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
         type(facts) :: law
         real(dp) :: force, stiffness
         integer :: status
@@ -48,6 +48,8 @@ contains
             eq%damping = run%damping
             eq%area = run%area
             eq%alpha = props(prop_alpha_t)
+            eq%alpha_n = props(prop_alpha_n)
+            eq%across = run%across
             law = friction_facts(props)
             eq%damper = law%damping
             eq%rigid = run%rigid_contact
@@ -62,7 +64,11 @@ contains
             natural(elastic) = force / (run%area * eq%alpha)
             if (eq%surface%traits%weight * largest > 0.0_dp) natural(memory) = force &
                 / (run%area * largest * eq%surface%traits%weight)
-            if (eq%surface%traits%stiff) natural = natural * stiff_sizes
+            if (eq%surface%traits%stiff) natural(:along) = natural(:along) * stiff_sizes
+            if (.not. run%across%free()) return
+            natural(place) = force / (run%area * eq%alpha_n)
+            natural(away) = natural(place) * sqrt((run%across%stiffness + run%area * eq%alpha_n) &
+                / run%across%mass)
         end associate
     end subroutine set_up
 
@@ -74,6 +80,7 @@ contains
 
         weights(velocity) = 1.0_dp / (rtol * max(natural(velocity), abs(y(velocity))))
         weights(extension) = 1.0_dp / (rtol * max(natural(extension), abs(y(extension))))
+        weights(place:away) = 1.0_dp / (rtol * max(natural(place:away), abs(y(place:away))))
     end subroutine set_growing_weights
 
     !> Puts the block where a state has it.
@@ -96,6 +103,14 @@ contains
 
         y = 0.0_dp
         y(extension) = state%spring(i) / equations%stiffness
+        associate (across => equations%across, u_n => state%statev(i, statev_u_n))
+            if (across%free()) then
+                y(extension) = y(extension) + across%tilt * (u_n - across%rest) &
+                    / equations%stiffness
+                y(place) = u_n
+                y(away) = state%v_n
+            end if
+        end associate
         y(velocity) = state%v(i)
         y(elastic) = state%statev(i, statev_u_et)
         select case (equations%surface%traits%memory)
@@ -128,7 +143,7 @@ contains
         y(slip) = max(y(slip), old%statev(i, statev_slip))
         y(dissipated) = max(y(dissipated), old%statev(i, statev_dissipation))
         new%x(i) = new%drive - y(extension)
-        new%spring(i) = eq%stiffness * y(extension)
+        new%spring(i) = eq%pull(y)
         traction = eq%traction(t, y)
         new%friction(i) = eq%area * traction
         new%v(i) = y(velocity)

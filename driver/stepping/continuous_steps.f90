@@ -11,12 +11,12 @@ module continuous_steps
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
         prop_alpha_n, statev_u_n
-    use phase_changes, only : change_phase, first_root, phase_at_rest, settle, switch_values, &
-        switches
+    use phase_changes, only : change_phase, first_root, lifts, phase_at_rest, settle, &
+        switch_values, switches
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
-    use slider_rates, only : controlled, damped, drive_work, elastic, extension, memory, &
-        phase_open, slider_equations, slip, unknowns, velocity
+    use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
+        phase_open, place, slip, unknowns, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -41,7 +41,7 @@ module continuous_steps
         logical :: jumped = .false.             !! slip had no rate in the last attempt
         real(dp) :: ringing = huge(1.0_dp)      !! explicit steps longer than this amplify that of
                                                 !! an undamped contact [T]
-        real(dp) :: open_below = 0.0_dp         !! normal traction that counts as none [F/L^2]
+        real(dp) :: swinging = huge(1.0_dp)     !! and longer than this that across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
         logical :: reloaded = .false.           !! it is not always the same
     contains
@@ -66,44 +66,49 @@ contains
         self%largest = run%drive%largest_normal()
         associate (normal => run%drive%normal)
             self%reloaded = minval(normal) < maxval(normal) .or. run%drive%amplitude > 0.0_dp &
-                .or. any(abs(run%drive%normal_rate) > 0.0_dp)
+                .or. any(abs(run%drive%normal_rate) > 0.0_dp) .or. run%across%free()
         end associate
         associate (eq => self%block%equations)
             self%block%props = run%props
             call set_up(run, run%props, self%largest, eq, self%natural)
             eq%drive = run%drive
+            eq%across = system%across
             self%implicit = eq%surface%traits%stiff
-            self%open_below = self%largest * vanishing(self)
+            eq%open_below = self%largest * vanishing(self)
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure
-                eq%least_pressure = max(eq%least_pressure, self%open_below)
-                self%open_below = -tiny(self%largest)
+                eq%least_pressure = max(eq%least_pressure, eq%open_below)
+                eq%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
-            self%ringing = amplifying_step(eq)
+            if (.not. eq%rigid) self%ringing = amplifying_step(eq%mass, eq%stiffness + eq%area &
+                * eq%alpha, eq%damping + eq%area * eq%damper)
+            self%swinging = amplifying_step(eq%across%mass, eq%across%stiffness + eq%area &
+                * eq%alpha_n, eq%across%damping)
             call self%block%synchronise(start)
             eq%phase = phase_at_rest(eq)
-            if (start%normal <= min(0.0_dp, self%open_below)) eq%phase = phase_open
+            if (start%normal <= min(0.0_dp, eq%open_below)) eq%phase = phase_open
             eq%sense = eq%sense_of(self%block%y(elastic))
             if (eq%rigid) call take_off_spring(self%block, start)
         end associate
     end subroutine prepare
 
     !> The step at which Dormand and Prince's method begins to amplify the oscillation of a block on
-    !> its contact spring, if nothing damps that [T].
-    pure function amplifying_step(eq) result(dt)
-        type(slider_equations), intent(in) :: eq
+    !> its springs, if nothing damps that [T].
+    pure function amplifying_step(mass, stiffness, damping) result(dt)
+        real(dp), intent(in) :: mass        !! 0: it does not swing [F T^2/L]
+        real(dp), intent(in) :: stiffness   !! of all its springs [F/L]
+        real(dp), intent(in) :: damping     !! [F T/L]
         real(dp) :: dt
         real(dp), parameter :: neutral = 0.998_dp         !! times the angular frequency
         real(dp), parameter :: least_damping = 1.0e-3_dp  !! ratio
-        real(dp) :: stiffness, critical
+        real(dp) :: critical
 
         dt = huge(dt)
-        if (eq%rigid .or. .not. eq%mass > 0.0_dp) return
-        stiffness = eq%stiffness + eq%area * eq%alpha
-        critical = 2.0_dp * sqrt(stiffness * eq%mass)
-        if (eq%damping + eq%area * eq%damper >= least_damping * critical) return
-        dt = neutral * sqrt(eq%mass / stiffness)
+        if (.not. mass > 0.0_dp) return
+        critical = 2.0_dp * sqrt(stiffness * mass)
+        if (damping >= least_damping * critical) return
+        dt = neutral * sqrt(mass / stiffness)
     end function amplifying_step
 
     !> Part of the largest normal traction below which a contact under a varying one counts as open:
@@ -137,11 +142,13 @@ contains
         do
             wanted = min(self%dt, longest(self))
             end = end_of_step(old%time, wanted, self%limit)
-            if (.not. self%block%equations%steady) then
-                call find_opening(self%drive, piece, self%open_below, self%block%equations%phase &
-                    == phase_open, old%time, end, before, opening)
-                end = min(end, opening)
-            end if
+            associate (eq => self%block%equations)
+                if (.not. (eq%steady .or. eq%across%free())) then
+                    call find_opening(self%drive, piece, eq%open_below, eq%phase == phase_open, &
+                        old%time, end, before, opening)
+                    end = min(end, opening)
+                end if
+            end associate
             tried%h = end - old%time
             call self%attempt(old%time, tried)
             whole = tried
@@ -168,7 +175,8 @@ contains
             if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
                 * block%first(slip)   ! velocities of less than round-off of the drive's
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
-            if (tried%switch > 0) call change_phase(block, end, tried%switch)
+            if (tried%switch > 0 .and. tried%switch /= lifts) call change_phase(block, end, &
+                tried%switch)   ! the next step begins with a contact that opens or closes
         end associate
         call self%fill(end, piece, old, new)
     end subroutine step
@@ -182,6 +190,7 @@ contains
 
         dt = self%dt_max
         if (self%implicit .or. self%block%equations%phase == phase_open) return
+        dt = min(dt, self%swinging)
         if (self%block%first(slip) <= slow * abs(self%block%y(velocity))) dt = min(dt, self%ringing)
     end function longest
 
@@ -193,7 +202,7 @@ contains
         !> Part of the time that is lost in round-off, but for the steps that it takes to follow a
         !> decay which has gone on for as long.
         real(dp), parameter :: lost = 256.0_dp * shortest
-        real(dp) :: open_below
+        real(dp) :: pressure, open_below
         logical :: touches
 
         piece = self%drive%piece(old%time)
@@ -201,11 +210,17 @@ contains
             call self%block%equations%enter(piece)
             self%block%known = .false.
         end if
-        ! one that does not vary is taken as it is
-        open_below = merge(min(0.0_dp, self%open_below), self%open_below, &
-            self%block%equations%steady)
-        call take_load(self%block, self%system, self%drive%normal_traction(old%time, piece), &
-            open_below, lost * max(old%time, self%dt_min), old, touches)
+        associate (eq => self%block%equations)
+            pressure = self%drive%normal_traction(old%time, piece)
+            open_below = eq%open_below
+            if (eq%across%free()) then
+                pressure = eq%pressed_to(self%block%y)
+            else if (eq%steady) then   ! it is taken as it is
+                open_below = min(0.0_dp, open_below)
+            end if
+        end associate
+        call take_load(self%block, self%system, pressure, open_below, lost * max(old%time, &
+            self%dt_min), old, touches)
         if (touches) then   ! so steeply that Rodas4's differences for derivatives tell nothing
             self%implicit = .false.
             self%stiff = 0
@@ -271,7 +286,7 @@ contains
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t             !! [T]
         type(trial), intent(inout) :: tried   !! its length is given
-        real(dp) :: scales(2, controlled), growth
+        real(dp) :: scales(controlled, 2), growth
         integer, parameter :: explicit_rates = 6   !! evaluations of them in a step
 
         tried%switch = 0
@@ -280,8 +295,8 @@ contains
         if (.not. self%block%known) return
         call self%set_weights(t)
         if (self%implicit) then
-            scales(1, :) = self%weights
-            scales(2, :) = self%natural
+            scales(:, 1) = self%weights
+            scales(:, 2) = self%natural
             associate (block => self%block)
                 call rosenbrock_step(block%equations, t, tried%h, block%y, block%first, scales, &
                     tried%y, tried%error, growth)
@@ -305,8 +320,9 @@ contains
 
         call set_growing_weights(self%rtol, self%natural, self%block%y, self%weights)
         if (.not. self%reloaded) return
-        call self%block%equations%inputs(t, v_drive, pressure, pressure_rate)
-        pressure = max(pressure, self%open_below, self%block%equations%least_pressure)
+        call self%block%equations%inputs(t, self%block%y, v_drive, pressure, pressure_rate)
+        pressure = max(pressure, self%block%equations%open_below, &
+            self%block%equations%least_pressure)
         if (self%block%equations%surface%traits%stiff) then
             ! what counts for slip that goes with an exponential is traction over pressure
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
@@ -445,7 +461,9 @@ contains
         associate (eq => self%block%equations, y => self%block%y)
             new%time = t
             new%drive = self%origin + self%drive%position(t)
-            new%normal = self%drive%normal_traction(t, piece)
+            new%load = self%drive%normal_traction(t, piece)
+            new%normal = new%load
+            if (eq%across%free()) new%normal = self%system%carried_pressure(y(place))
             new%drive_work = y(drive_work)
             new%damped = y(damped)
             if (self%block%known) then
@@ -460,6 +478,10 @@ contains
                     eq%sense_of(y(extension)) * dy(slip)   ! slow beside the drive, too
             end if
             new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
+            if (.not. eq%across%free()) return
+            new%statev(1, statev_u_n) = y(place)
+            new%v_n = y(away)
+            new%a_n = dy(away)
         end associate
     end subroutine fill
 

@@ -2,7 +2,7 @@
 !> 1980) for the rate equations of a block.
 module dormand_prince
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use slider_rates, only : n => controlled, slider_equations, unknowns
+    use slider_rates, only : along, controlled, slider_equations, unknowns
     implicit none
     private
 
@@ -29,32 +29,34 @@ contains
         real(dp), intent(in) :: t, h                   !! [T]
         real(dp), intent(in) :: y(unknowns)
         real(dp), intent(in) :: first(unknowns)        !! rates at y
-        real(dp), intent(in) :: weights(n)             !! inverse of the tolerated errors
+        real(dp), intent(in) :: weights(controlled)    !! inverse of the tolerated errors
         real(dp), intent(out) :: new(unknowns)
         real(dp), intent(out) :: last(unknowns)        !! rates at the end
         real(dp), intent(out) :: error       !! part of the tolerated one; huge if a rate is missing
         real(dp), intent(out) :: stiffness   !! h times the size of the equations' derivative
         real(dp), dimension(unknowns) :: k2, k3, k4, k5, k6
-        real(dp) :: w(n)
+        real(dp) :: w(controlled)
         real(dp) :: change, way
         logical :: failed
+        integer :: n   !! unknowns that act on the others
         integer :: i
 
+        n = merge(controlled, along, equations%across%free())
         error = huge(error)
         stiffness = 0.0_dp
-        w = y(:n) + h * (a21 * first(:n))
+        w(:n) = y(:n) + h * (a21 * first(:n))
         call equations%rates(t + c2 * h, w, k2, failed)
         if (failed) return
-        w = y(:n) + h * (a31 * first(:n) + a32 * k2(:n))
+        w(:n) = y(:n) + h * (a31 * first(:n) + a32 * k2(:n))
         call equations%rates(t + c3 * h, w, k3, failed)
         if (failed) return
-        w = y(:n) + h * (a41 * first(:n) + a42 * k2(:n) + a43 * k3(:n))
+        w(:n) = y(:n) + h * (a41 * first(:n) + a42 * k2(:n) + a43 * k3(:n))
         call equations%rates(t + c4 * h, w, k4, failed)
         if (failed) return
-        w = y(:n) + h * (a51 * first(:n) + a52 * k2(:n) + a53 * k3(:n) + a54 * k4(:n))
+        w(:n) = y(:n) + h * (a51 * first(:n) + a52 * k2(:n) + a53 * k3(:n) + a54 * k4(:n))
         call equations%rates(t + c5 * h, w, k5, failed)
         if (failed) return
-        w = y(:n) + h * (a61 * first(:n) + a62 * k2(:n) + a63 * k3(:n) + a64 * k4(:n) &
+        w(:n) = y(:n) + h * (a61 * first(:n) + a62 * k2(:n) + a63 * k3(:n) + a64 * k4(:n) &
             + a65 * k5(:n))
         call equations%rates(t + h, w, k6, failed)
         if (failed) return

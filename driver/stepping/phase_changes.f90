@@ -15,12 +15,14 @@ module phase_changes
 
     public :: change_phase, first_root, phase_at_rest, settle, slide_on, switch_values
 
-    integer, parameter, public :: switches = 3   !! ways in which a phase can end
+    integer, parameter, public :: switches = 4   !! ways in which a phase can end
+    integer, parameter, public :: lifts = 4      !! the one in which the block leaves the base
 
 contains
 
     !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
-    !> cap and law change places, 3 because the law changes its form.
+    !> cap and law change places, 3 because the law changes its form, 4 because the block leaves the
+    !> base or comes back.
     pure function switch_values(eq, t, y, dy) result(g)
         type(slider_equations), intent(in) :: eq
         real(dp), intent(in) :: t              !! [T]
@@ -33,6 +35,8 @@ contains
         logical :: jumps, gradual, capped
 
         g = -1.0_dp
+        if (eq%across%free()) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
+            * (eq%open_below - eq%pressed_to(y))
         if (eq%damper > 0.0_dp) then
             if (eq%follows_share() .and. eq%phase /= phase_open) g(1) = share_switch(eq, t, y)
             return
@@ -41,7 +45,7 @@ contains
         capped = eq%surface%tau_max < huge(own)
         if (eq%phase == phase_open .or. gradual .and. .not. capped) return
         if (gradual .and. eq%rigid .and. .not. eq%mass > 0.0_dp) return
-        call eq%inputs(t, v_drive, pressure, pressure_rate)
+        call eq%inputs(t, y, v_drive, pressure, pressure_rate)
         associate (cap => eq%surface%tau_max)
             select case (eq%phase)
             case (phase_stick)
@@ -93,8 +97,8 @@ contains
         real(dp) :: v_drive, pressure, pressure_rate, pull
         logical :: failed
 
-        call eq%inputs(t, v_drive, pressure, pressure_rate)
-        pull = eq%stiffness * y(extension)
+        call eq%inputs(t, y, v_drive, pressure, pressure_rate)
+        pull = eq%pull(y)
         if (eq%phase == phase_stick) then
             call eq%damped_contact(y, pull, v_drive, pressure, pressure_rate, contact, failed)
             g = contact%ratio
@@ -155,7 +159,7 @@ contains
                 if (eq%phase == phase_open) return
                 g = switch_values(eq, t, block%y, block%first)
                 if (eq%phase == phase_stick .and. .not. eq%damper > 0.0_dp) then
-                    call eq%inputs(t, v_drive, pressure, pressure_rate)
+                    call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
                     if (g(1) < -round_off * eq%strength(block%y, pressure)) return
                     slides = would_slide(block, pressure, pressure_rate)
                     if (.not. (slides .and. (g(1) > 0.0_dp .or. .not. eq%rigid))) return
@@ -213,7 +217,7 @@ contains
 
         block%known = .false.
         associate (eq => block%equations)
-            call eq%inputs(t, v_drive, pressure, pressure_rate)
+            call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
             if (eq%damper > 0.0_dp) then
                 if (eq%phase == phase_slide) then
                     eq%phase = phase_stick

@@ -5,7 +5,8 @@ module rosenbrock
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_rates, only : chain_equations
     use chain_solver, only : chain_matrix
-    use slider_rates, only : controlled, elastic, extension, slider_equations, unknowns, velocity
+    use slider_rates, only : along, controlled, elastic, extension, slider_equations, unknowns, &
+        velocity
     implicit none
     private
 
@@ -58,17 +59,6 @@ module rosenbrock
             real(dp), intent(inout) :: a(lda, n)
             integer, intent(out) :: ipiv(n), info
         end subroutine dgetrf
-
-        !> LAPACK: solution by these factors.
-        pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-            import :: dp
-            implicit none
-            character(len=1), intent(in) :: trans
-            integer, intent(in) :: n, nrhs, lda, ldb, ipiv(n)
-            real(dp), intent(in) :: a(lda, n)
-            real(dp), intent(inout) :: b(ldb, nrhs)
-            integer, intent(out) :: info
-        end subroutine dgetrs
     end interface
 
 contains
@@ -79,7 +69,7 @@ contains
         real(dp), intent(in) :: t, h                 !! [T]
         real(dp), intent(in) :: y(unknowns)
         real(dp), intent(in) :: first(unknowns)      !! rates at y
-        real(dp), intent(in) :: scales(2, controlled)   !! of the unknowns: inverse of the
+        real(dp), intent(in) :: scales(controlled, 2)   !! of the unknowns: inverse of the
                                                         !! tolerated error, natural size
         real(dp), intent(out) :: new(unknowns)
         real(dp), intent(out) :: error    !! part of the tolerated one; huge if a rate is missing
@@ -88,13 +78,15 @@ contains
         real(dp) :: j(unknowns, controlled), by_time(unknowns), k(unknowns, stages), &
             matrix(controlled, controlled), w(unknowns)
         logical :: failed
+        integer :: n   !! unknowns that act on the others
         integer :: i, pivot(controlled)
 
         error = huge(error)
         growth = 0.0_dp
-        call differentiate(equations, t, h, y, first, scales(2, :), j, by_time, failed)
+        n = merge(controlled, along, equations%across%free())
+        call differentiate(n, equations, t, h, y, first, scales(:, 2), j, by_time, failed)
         if (failed) return
-        call factorise(j, h, scales(2, :), matrix, pivot, growth, failed)
+        call factorise(n, j, h, scales(:, 2), matrix, pivot, growth, failed)
         if (failed) return
         new = y
         do i = 1, stages
@@ -106,54 +98,69 @@ contains
                 if (failed) return
             end if
             k(:, i) = k(:, i) + matmul(k(:, :i - 1), c(i, :i - 1)) / h + (h * d(i)) * by_time
-            call solve(matrix, pivot, scales(2, :), k(:controlled, i))
-            call follow(j, h, k(:, i))
+            call solve(n, matrix, pivot, scales(:, 2), k(:n, i))
+            call follow(n, j, h, k(:, i))
         end do
         new = w + k(:, stages)
-        error = maxval(abs(k(:controlled, stages)) * scales(1, :))
+        error = maxval(abs(k(:n, stages)) * scales(:n, 1))
         if (.not. all(abs(new) <= huge(error))) error = huge(error)
     end subroutine rosenbrock_step
 
     !> Factors of a step's matrix, by natural sizes, so that no choice of units has a say in which
     !> pivot is taken.
-    pure subroutine factorise(j, h, natural, matrix, pivot, growth, failed)
-        real(dp), intent(in) :: j(unknowns, controlled), h, natural(controlled)
-        real(dp), intent(out) :: matrix(controlled, controlled)
-        integer, intent(out) :: pivot(controlled)
+    pure subroutine factorise(n, j, h, natural, matrix, pivot, growth, failed)
+        integer, intent(in) :: n
+        real(dp), intent(in) :: j(unknowns, n), h, natural(n)
+        real(dp), intent(out) :: matrix(n, n)
+        integer, intent(out) :: pivot(n)
         real(dp), intent(out) :: growth   !! size of the equations' derivative [1/T]
         logical, intent(out) :: failed
         integer :: i, info
 
         growth = 0.0_dp
-        do i = 1, controlled
+        do i = 1, n
             matrix(i, :) = -j(i, :) * natural / natural(i)
             growth = max(growth, sum(abs(matrix(i, :))))
         end do
-        do i = 1, controlled
+        do i = 1, n
             matrix(i, i) = matrix(i, i) + 1.0_dp / (gamma * h)
         end do
-        call dgetrf(controlled, controlled, matrix, controlled, pivot, info)
+        call dgetrf(n, n, matrix, n, pivot, info)
         failed = info /= 0
     end subroutine factorise
 
-    pure subroutine solve(matrix, pivot, natural, k)
-        real(dp), intent(in) :: matrix(controlled, controlled), natural(controlled)
-        integer, intent(in) :: pivot(controlled)
-        real(dp), intent(inout) :: k(controlled)
-        integer :: info
+    !> Solution by these factors: LAPACK's takes twice as long for so few unknowns.
+    pure subroutine solve(n, matrix, pivot, natural, k)
+        integer, intent(in) :: n, pivot(n)
+        real(dp), intent(in) :: matrix(n, n), natural(n)
+        real(dp), intent(inout) :: k(n)
+        real(dp) :: other
+        integer :: i
 
         k = k / natural
-        call dgetrs('N', controlled, 1, matrix, controlled, pivot, k, controlled, info)
+        do i = 1, n
+            other = k(pivot(i))
+            k(pivot(i)) = k(i)
+            k(i) = other
+        end do
+        do i = 1, n
+            k(i + 1:) = k(i + 1:) - k(i) * matrix(i + 1:, i)
+        end do
+        do i = n, 1, -1
+            k(i) = k(i) / matrix(i, i)
+            k(:i - 1) = k(:i - 1) - k(i) * matrix(:i - 1, i)
+        end do
         k = k * natural
     end subroutine solve
 
     !> The unknowns that do not act on the others.
-    pure subroutine follow(j, h, k)
-        real(dp), intent(in) :: j(unknowns, controlled), h
+    pure subroutine follow(n, j, h, k)
+        integer, intent(in) :: n
+        real(dp), intent(in) :: j(unknowns, n), h
         real(dp), intent(inout) :: k(unknowns)
 
         k(controlled + 1:) = gamma * h * (k(controlled + 1:) + matmul(j(controlled + 1:, :), &
-            k(:controlled)))
+            k(:n)))
     end subroutine follow
 
     !> For a number of blocks.
@@ -163,10 +170,9 @@ contains
         logical, intent(in) :: ring
 
         allocate (self%natural(controlled, blocks), self%weights(controlled, blocks))
-        allocate (self%j(unknowns, controlled, blocks), self%by_time(unknowns, blocks), &
-            self%k(unknowns, blocks, stages), self%matrix(controlled, controlled, blocks), &
-            self%answer(controlled, blocks), self%share(blocks), &
-            self%pivot(controlled, blocks))
+        allocate (self%j(unknowns, along, blocks), self%by_time(unknowns, blocks), &
+            self%k(unknowns, blocks, stages), self%matrix(along, along, blocks), &
+            self%answer(along, blocks), self%share(blocks), self%pivot(along, blocks))
         call self%neighbours%make_room(blocks, ring)
     end subroutine make_room
 
@@ -204,7 +210,7 @@ contains
             if (failed) return
         end do
         new(:, :) = new + self%k(:, :, stages)
-        error = maxval(abs(self%k(:controlled, :, stages)) * self%weights)
+        error = maxval(abs(self%k(:along, :, stages)) * self%weights(:along, :))
         if (.not. all(abs(new) <= huge(error))) error = huge(error)
     end subroutine step
 
@@ -223,19 +229,19 @@ contains
             associate (block => chain%blocks(min(i, size(chain%blocks))))
                 call block%rates(t, y(:controlled, i), own, failed)
                 if (failed) return
-                call differentiate(block, t, h, y(:, i), own, self%natural(:, i), &
+                call differentiate(along, block, t, h, y(:, i), own, self%natural(:, i), &
                     self%j(:, :, i), self%by_time(:, i), failed)
             end associate
             if (failed) return
             self%j(velocity, extension, i) = self%j(velocity, extension, i) &
                 + chain%by_own_extension(i, n)
             self%by_time(velocity, i) = self%by_time(velocity, i) + chain%by_walls(i, n, t)
-            call factorise(self%j(:, :, i), h, self%natural(:, i), self%matrix(:, :, i), &
+            call factorise(along, self%j(:, :, i), h, self%natural(:, i), self%matrix(:, :, i), &
                 self%pivot(:, i), growth, failed)
             if (failed) return
             self%answer(:, i) = 0.0_dp
             self%answer(velocity, i) = 1.0_dp / chain%system%mass
-            call solve(self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
+            call solve(along, self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
                 self%answer(:, i))
         end do
     end subroutine factorise_all
@@ -253,8 +259,8 @@ contains
         logical :: solved
 
         do i = 1, size(k, 2)
-            call solve(self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
-                k(:controlled, i))
+            call solve(along, self%matrix(:, :, i), self%pivot(:, i), self%natural(:, i), &
+                k(:along, i))
         end do
         if (chain%system%coupling > 0.0_dp) then
             self%neighbours%beside = -chain%system%coupling
@@ -266,21 +272,22 @@ contains
             if (failed) return
             pulled = self%share / self%answer(extension, :) + pulled
             do i = 1, size(k, 2)
-                k(:controlled, i) = k(:controlled, i) + self%answer(:, i) * pulled(i)
+                k(:along, i) = k(:along, i) + self%answer(:, i) * pulled(i)
             end do
         end if
         failed = .false.
         do i = 1, size(k, 2)
-            call follow(self%j(:, :, i), h, k(:, i))
+            call follow(along, self%j(:, :, i), h, k(:, i))
         end do
     end subroutine solve_all
 
     !> Derivatives of the rates by the unknowns that act on them, and by time, by differences: taken
     !> in the sense of the loading, so that a mirrored motion has the mirrored steps.
-    pure subroutine differentiate(equations, t, h, y, first, natural, j, by_time, failed)
+    pure subroutine differentiate(n, equations, t, h, y, first, natural, j, by_time, failed)
+        integer, intent(in) :: n
         type(slider_equations), intent(in) :: equations
-        real(dp), intent(in) :: t, h, y(unknowns), first(unknowns), natural(controlled)
-        real(dp), intent(out) :: j(unknowns, controlled)
+        real(dp), intent(in) :: t, h, y(unknowns), first(unknowns), natural(n)
+        real(dp), intent(out) :: j(unknowns, n)
         real(dp), intent(out) :: by_time(unknowns)
         logical, intent(out) :: failed
         real(dp), parameter :: little = 1.0e-8_dp
@@ -288,9 +295,9 @@ contains
         real(dp) :: w(unknowns), dy(unknowns), steps(controlled), step
         integer :: i
 
-        steps = little * max(abs(y(:controlled)), natural)
+        steps(:n) = little * max(abs(y(:n)), natural)
         steps(mirrored) = equations%forward * steps(mirrored)
-        do i = 1, controlled
+        do i = 1, n
             w = y
             w(i) = y(i) + steps(i)
             step = w(i) - y(i)

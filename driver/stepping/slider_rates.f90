@@ -4,24 +4,28 @@ module slider_rates
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : law_state, load_rates, onset_drops, onset_gradual, sliding_surface
     use loading_programme, only : programme
+    use slider_system, only : normal_motion
     use slip_balance, only : damper_balance, slip_of
     implicit none
     private
 
     public :: contact_motion, slider_equations
 
-    !> Unknowns. Those of the error norm come first; the others follow from them.
-    integer, parameter, public :: unknowns = 9, controlled = 5
+    !> Unknowns. Those of the error norm come first, of them those along the interface; the others
+    !> follow from them.
+    integer, parameter, public :: unknowns = 11, controlled = 7, along = 5
     integer, parameter, public :: extension = 1    !! of the drive spring [L]
     integer, parameter, public :: velocity = 2     !! of the block; not without mass [L/T]
     integer, parameter, public :: elastic = 3      !! elastic displacement of the contact [L]
     integer, parameter, public :: memory = 4       !! of the law: mu, D, or ln(theta)
     integer, parameter, public :: ratio = 5        !! R while a shear cap holds the traction, or
                                                    !! beside a damper [-]
-    integer, parameter, public :: slip = 6         !! accumulated [L]
-    integer, parameter, public :: drive_work = 7   !! [F L]
-    integer, parameter, public :: damped = 8       !! energy [F L]
-    integer, parameter, public :: dissipated = 9   !! energy per area [F/L]
+    integer, parameter, public :: place = 6        !! u_n of a block that moves across [L]
+    integer, parameter, public :: away = 7         !! its velocity away from the base [L/T]
+    integer, parameter, public :: slip = 8         !! accumulated [L]
+    integer, parameter, public :: drive_work = 9   !! [F L]
+    integer, parameter, public :: damped = 10      !! energy [F L]
+    integer, parameter, public :: dissipated = 11  !! energy per area [F/L]
 
     !> Phases of the contact. A law without a yield point always slides, if only by a little.
     integer, parameter, public :: phase_open = 0
@@ -39,9 +43,13 @@ module slider_rates
         real(dp) :: damper = 0.0_dp      !! beside that [F T/L^3]; with it, all but a subloading
                                          !! surface slides, if only at a slip rate of zero
         logical :: rigid = .false.       !! the contact has no spring
+        type(normal_motion) :: across    !! the interface: there the pressure follows from `place`
+        real(dp) :: alpha_n = 0.0_dp     !! normal stiffness of the contact [F/L^3]
+        real(dp) :: open_below = 0.0_dp  !! pressure that counts as none [F/L^2]
         type(programme) :: drive
         integer :: piece = 0             !! of the programme, in which the rates are taken
-        logical :: steady = .false.      !! drive and normal traction do not change in it: they are
+        logical :: steady = .false.      !! drive and load do not change in it
+        logical, private :: constant = .false.   !! nor does the pressure: they are
         real(dp), private :: constant_velocity = 0.0_dp   !! [L/T]
         real(dp), private :: constant_pressure = 0.0_dp   !! [F/L^2]
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
@@ -50,8 +58,8 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
-            traction, inputs, follows_traction, sense_of, follows_share, runs_away, &
-            damped_contact, balance_at
+            traction, inputs, pull, follows_traction, sense_of, follows_share, runs_away, &
+            damped_contact, balance_at, pressed_to
     end type slider_equations
 
     !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
@@ -74,6 +82,7 @@ contains
         self%piece = piece
         self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
             .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
+        self%constant = self%steady .and. .not. self%across%free()
         self%constant_velocity = self%drive%velocity(piece)
         self%constant_pressure = max(self%drive%normal(piece), self%least_pressure)
     end subroutine enter
@@ -90,9 +99,10 @@ contains
     end function sense_of
 
     !> Velocity of the drive, pressure and its rate.
-    pure subroutine inputs(self, t, drive_velocity, pressure, pressure_rate)
+    pure subroutine inputs(self, t, y, drive_velocity, pressure, pressure_rate)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: t                 !! [T]
+        real(dp), intent(in) :: y(controlled)
         real(dp), intent(out) :: drive_velocity   !! [L/T]
         real(dp), intent(out) :: pressure         !! [F/L^2]
         real(dp), intent(out) :: pressure_rate    !! [F/L^2/T]
@@ -100,17 +110,37 @@ contains
         drive_velocity = self%constant_velocity
         pressure = self%constant_pressure
         pressure_rate = 0.0_dp
-        if (.not. self%steady) call changing_inputs(self, t, drive_velocity, pressure, &
+        if (.not. self%constant) call changing_inputs(self, t, y, drive_velocity, pressure, &
             pressure_rate)
         if (self%phase /= phase_open) return
         pressure = 0.0_dp
         pressure_rate = 0.0_dp
     end subroutine inputs
 
-    !> Those that change with time. By themselves, so that the rest is small enough to be inlined.
-    pure subroutine changing_inputs(self, t, drive_velocity, pressure, pressure_rate)
+    !> Pressure in the contact of a block that moves across the interface; of an open one below 0.
+    pure function pressed_to(self, y) result(pressure)
         class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: t
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: pressure   !! [F/L^2]
+
+        pressure = -self%alpha_n * y(place)
+    end function pressed_to
+
+    !> Force of the drive spring along the interface [F].
+    pure function pull(self, y) result(force)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: force
+
+        force = self%stiffness * y(extension)
+        if (self%across%mass > 0.0_dp) force = force - self%across%tilt * (y(place) &
+            - self%across%rest)
+    end function pull
+
+    !> Those that change with time. By themselves, so that the rest is small enough to be inlined.
+    pure subroutine changing_inputs(self, t, y, drive_velocity, pressure, pressure_rate)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t, y(controlled)
         real(dp), intent(out) :: drive_velocity, pressure, pressure_rate
         real(dp), parameter :: two_pi = 8.0_dp * atan(1.0_dp)
 
@@ -121,6 +151,10 @@ contains
             if (d%amplitude > 0.0_dp) pressure_rate = pressure_rate + d%amplitude * two_pi &
                 * d%frequency * cos(two_pi * d%frequency * t + d%phase)
         end associate
+        if (self%across%free()) then
+            pressure = self%pressed_to(y)
+            pressure_rate = -self%alpha_n * y(away)
+        end if
         if (pressure >= self%least_pressure) return
         pressure = self%least_pressure
         pressure_rate = 0.0_dp
@@ -134,21 +168,21 @@ contains
         real(dp), intent(out) :: dy(unknowns)
         logical, intent(out) :: failed          !! slip has no rate: it jumps
         type(contact_motion) :: contact
-        real(dp) :: pull, v_drive, pressure, pressure_rate
+        real(dp) :: force, v_drive, pressure, pressure_rate
 
-        call inputs(self, t, v_drive, pressure, pressure_rate)
-        pull = self%stiffness * y(extension)
+        call inputs(self, t, y, v_drive, pressure, pressure_rate)
+        force = pull(self, y)
         if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
-            call damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
+            call damped_contact(self, y, force, v_drive, pressure, pressure_rate, contact, failed)
         else if (self%rigid .and. self%phase /= phase_open) then
             if (self%follows_traction()) then
-                call following_contact(self, y, pull, pressure, pressure_rate, contact)
+                call following_contact(self, y, force, pressure, pressure_rate, contact)
                 failed = .false.
             else
-                call rigid_contact(self, y, pull, pressure, pressure_rate, contact, failed)
+                call rigid_contact(self, y, force, pressure, pressure_rate, contact, failed)
             end if
         else if (self%phase == phase_slide .and. self%surface%traits%onset == onset_drops) then
-            call dropping_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
+            call dropping_contact(self, y, force, v_drive, pressure, pressure_rate, contact, failed)
         else
             call elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
         end if
@@ -161,19 +195,37 @@ contains
         dy(extension) = v_drive - contact%velocity
         dy(velocity) = 0.0_dp
         if (self%mass > 0.0_dp .and. .not. (self%rigid .and. self%phase == phase_stick)) then
-            dy(velocity) = (pull - self%damping * contact%velocity - self%area &
+            dy(velocity) = (force - self%damping * contact%velocity - self%area &
                 * contact%traction) / self%mass
         end if
         dy(elastic) = contact%elastic
         dy(memory) = contact%memory
         dy(ratio) = contact%ratio
         if (self%follows_share() .and. self%phase == phase_stick) dy(ratio) = 0.0_dp
+        dy(place:away) = 0.0_dp
         dy(slip) = contact%slip
-        dy(drive_work) = pull * v_drive
+        dy(drive_work) = force * v_drive
         dy(damped) = self%damping * contact%velocity**2
         dy(dissipated) = abs(contact%traction) * contact%slip
         if (self%damper > 0.0_dp) dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
+        if (self%across%mass > 0.0_dp) call move_across(self, t, y, dy)
     end subroutine rates
+
+    !> The motion across the interface, which friction does not act on.
+    pure subroutine move_across(self, t, y, dy)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(inout) :: dy(unknowns)
+        real(dp) :: load   !! of the programme [F]
+
+        load = self%area * self%drive%normal_traction(t, self%piece)
+        dy(place) = y(away)
+        dy(away) = (self%across%force(y(extension), y(place), y(away)) - load + self%area &
+            * max(0.0_dp, self%pressed_to(y))) / self%across%mass
+        dy(drive_work) = dy(drive_work) - load * y(away)
+        dy(damped) = dy(damped) + self%across%damping * y(away)**2
+    end subroutine move_across
 
     !> A contact on its spring. Without mass and damper, that and the drive spring are one.
     pure subroutine elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
@@ -439,11 +491,11 @@ contains
         real(dp), intent(in) :: fastest        !! velocity of the drive in the programme [L/T]
         logical :: yes
         real(dp), parameter :: far = 100.0_dp
-        real(dp) :: moved, v_drive, pressure, pressure_rate
+        real(dp) :: moved
 
-        call inputs(self, t, v_drive, pressure, pressure_rate)
         moved = fastest
-        if (max(self%mass, self%damping) > 0.0_dp) moved = max(moved, abs(v_drive - dy(extension)))
+        if (max(self%mass, self%damping) > 0.0_dp) moved = max(moved, &
+            abs(self%drive%drive_velocity(t, self%piece) - dy(extension)))
         yes = dy(slip) > far * moved .and. .not. self%rigid
     end function runs_away
 
@@ -505,7 +557,7 @@ contains
             else if (full > 0.0_dp) then
                 carried = self%alpha * abs(y(elastic))
                 if (self%damper > 0.0_dp) then
-                    balance = balance_at(self, y, self%stiffness * y(extension))
+                    balance = balance_at(self, y, self%pull(y))
                     carried = balance%push
                 end if
                 state%r = min(1.0_dp, carried / full)
@@ -545,15 +597,13 @@ contains
         if (self%phase == phase_open) return
         tau = self%alpha * y(elastic)
         if (.not. (self%rigid .or. self%damper > 0.0_dp) .or. self%follows_traction()) return
-        call inputs(self, t, v_drive, pressure, pressure_rate)
+        call inputs(self, t, y, v_drive, pressure, pressure_rate)
         if (self%damper > 0.0_dp) then
-            call damped_contact(self, y, self%stiffness * y(extension), v_drive, pressure, &
-                pressure_rate, contact, failed)
-            tau = contact%traction
-            return
+            call damped_contact(self, y, self%pull(y), v_drive, pressure, pressure_rate, contact, &
+                failed)
+        else
+            call rigid_contact(self, y, self%pull(y), pressure, pressure_rate, contact, failed)
         end if
-        call rigid_contact(self, y, self%stiffness * y(extension), pressure, pressure_rate, &
-            contact, failed)
         tau = contact%traction
     end function traction
 

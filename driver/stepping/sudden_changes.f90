@@ -68,14 +68,14 @@ contains
         real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
 
         associate (eq => block%equations, y => block%y)
-            pull = eq%stiffness * y(extension) / eq%area
+            pull = eq%pull(y) / eq%area
             yes = eq%follows_traction() .and. sign(pull, pull * y(elastic)) &
                 < eq%alpha * abs(y(elastic))
             if (.not. yes) return
             if (abs(pull) < eq%alpha * abs(y(elastic))) then
                 y(elastic) = pull / eq%alpha
             else
-                call eq%inputs(t, v_drive, pressure, pressure_rate)
+                call eq%inputs(t, y, v_drive, pressure, pressure_rate)
                 call eq%surface%resistance_at(eq%law_state_of(y, pressure), faster &
                     * block%first(slip), pressure, resistance, by_rate)
                 y(elastic) = sign(min(resistance, abs(pull)), pull) / eq%alpha
@@ -100,6 +100,7 @@ contains
         closed = pressure > open_below
         associate (eq => block%equations)
             if (closed .and. eq%phase /= phase_open) then
+                if (eq%across%free()) return   ! it comes with the motion
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
                 call jump_to(block, system, pressure, time_lost, state)
             else if (closed) then

@@ -54,11 +54,11 @@ contains
 
         associate (eq => block%equations, before => block%first(slip), &
             after => tried%last(slip))
-            call eq%inputs(t + tried%h, v_drive, pressure, pressure_rate)
+            call eq%inputs(t + tried%h, tried%y, v_drive, pressure, pressure_rate)
             call eq%surface%resistance_at(eq%law_state_of(tried%y, pressure), after, pressure, &
                 resistance, by_rate)
             if (max(eq%mass, eq%damping * tried%h) < no_say * tried%h * by_rate * eq%area) then
-                tried%y(elastic) = eq%stiffness * tried%y(extension) / (eq%area * eq%alpha)
+                tried%y(elastic) = eq%pull(tried%y) / (eq%area * eq%alpha)
                 call eq%rates(t + tried%h, tried%y, tried%last, failed)
                 if (failed) tried%error = huge(tried%error)
             else if (after > before .and. eq%mass * abs(tried%last(velocity)) * weight &

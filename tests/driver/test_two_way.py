@@ -160,6 +160,73 @@ class Motion(Program):
             self.assertEqual((self.folder / 'case_out' / table).read_bytes(), (self.folder / 'whole' / table).read_bytes())
 
 
+class ContinuousTime(Motion):
+    """Adaptive steps against an independent integration (scipy's DOP853 and Radau with the ends of phases located, rtol 1e-11)."""
+    SLIDER = {'mass': '1', 'stiffness': '20', 'damping': '0.2', 'normal_mass': '1', 'normal_stiffness': '10', 'normal_damping': '0.5',
+              'tilt_stiffness': '3'}
+    STATIC_KINETIC = {'law': "'static_kinetic'", 'alpha_n': '1000', 'alpha_t': '1000', 'mu': None, 'mu_s': '0.5', 'mu_k': '0.4', 'd_c': '20'}
+    FLASH_HEATING = dict(law="'flash_heating'", alpha_n='1000', alpha_t='1000', mu=None, a='0.01', b='0.015', d_c='0.01', v0='0.001', f0='0.6',
+                         f_w='0.2', v_w='0.03')
+
+    def told(self, friction, slider=(), sense=1, **groups):
+        """Last row, energies and rows of a run."""
+        time = {'t_end': '10', 'dt': None, 'rtol': '1e-7', **groups.pop('time', {})}
+        groups = {'drive': {'velocity': '0.1'}, **groups}
+        groups['drive']['velocity'] = repr(sense * float(groups['drive']['velocity']))
+        slider = {**self.SLIDER, **dict(slider)}
+        slider['tilt_stiffness'] = repr(sense * float(slider['tilt_stiffness']))
+        result = self.run_text(two_way(friction, slider, time=time, **groups), '--no-plot')
+        self.assert_done(result)
+        energies = {line.split()[0]: float(line.split()[-1]) for line in result.stdout.splitlines() if line.startswith('  ')}
+        rows = self.rows('case_out/case.csv')
+        return {key: float(value) for key, value in rows[-1].items()}, energies, rows
+
+    def assert_motion(self, told, displacement, away, dissipated):
+        last, energies, _ = told
+        self.assertAlmostEqual(last['displacement'], displacement, delta=1e-6 * abs(displacement))
+        self.assertAlmostEqual(last['normal_displacement'], away, delta=1e-6 * abs(away) + 1e-8)
+        self.assertAlmostEqual(energies['dissipated'], dissipated, delta=2e-6 * dissipated)
+        self.assertLess(abs(energies['unbalanced']), 1e-6 * dissipated)
+
+    def test_friction_that_drops_at_once(self):
+        # 17 slips, each after a drop of the contact spring's force; Newmark's steps dissipated 11 % more
+        self.assert_motion(self.told(self.STATIC_KINETIC), 0.83294791016, -0.009505806733, 3.15647199984)
+
+    def test_on_a_rigid_contact(self):
+        self.assert_motion(self.told({**self.STATIC_KINETIC, 'contact': "'rigid'"}), 0.75349105818, -0.009262747472, 2.86172828107)
+
+    def test_beside_a_damper(self):
+        self.assert_motion(self.told({**self.STATIC_KINETIC, 'eta_t': '30'}), 0.76689486761, -0.009306942951, 2.90331236940)
+
+    def test_a_block_that_leaves_the_base_and_comes_back_three_times(self):
+        self.assert_motion(self.told(self.STATIC_KINETIC, {'normal_damping': '5', 'normal_traction': None}, time={'t_end': '5'},
+                                     drive={'velocity': '0.5', 'duration': '2, 0.3, 2.7', 'normal': '10, 0, 8'}),
+                           2.26736636443, -0.007287877468, 6.38542161674)
+
+    def test_flash_heating(self):
+        self.assert_motion(self.told(self.FLASH_HEATING), 0.86197988313, -0.009492648028, 1.97982274812)
+
+    def test_a_mirrored_motion_has_the_mirrored_table(self):
+        for friction in (self.STATIC_KINETIC, self.FLASH_HEATING):
+            rows, mirrored = (self.told(friction, sense=sense)[2] for sense in (1, -1))
+            self.assertEqual(len(rows), len(mirrored))
+            for row, image in zip(rows, mirrored, strict=True):
+                self.assertEqual(float(row['velocity']), -float(image['velocity']))
+                self.assertEqual(row['normal_traction'], image['normal_traction'])
+
+    def test_a_resumed_run_is_the_same(self):
+        """Stopped where it sticks, slides or flies."""
+        for friction in (self.STATIC_KINETIC, {**self.STATIC_KINETIC, 'contact': "'rigid'"}, self.FLASH_HEATING):
+            text = two_way(friction, {**self.SLIDER, 'normal_damping': '5', 'normal_traction': None}, time={'t_end': '5', 'dt': None, 'rtol': '1e-6'},
+                           drive={'velocity': '0.5', 'duration': '2, 0.3, 2.7', 'normal': '10, 0, 8'})
+            self.assert_done(self.run_text(text, '--no-plot', '--output', 'whole'))
+            size = (self.folder / 'whole/case.csv').stat().st_size
+            for part in (0.3, 0.6, 0.8):
+                self.assertEqual(self.run_text(text + f'&output table_limit = {part * size / 1e9:.3e} /\n', '--no-plot').returncode, 1)
+                self.assert_done(self.run_text(text, '--no-plot', '--resume'))
+                self.assertEqual((self.folder / 'case_out/case.csv').read_bytes(), (self.folder / 'whole/case.csv').read_bytes())
+
+
 class Keys(Program):
     def test_what_needs_what(self):
         self.refused(two_way(slider={'normal_mass': None}), 'normal_stiffness', 'tilt_stiffness', 'needs a normal_mass')
@@ -167,7 +234,7 @@ class Keys(Program):
         self.refused(two_way(slider={'normal_mass': '0'}), 'normal_mass', 'must be > 0')
         self.refused(two_way(slider={'tilt_stiffness': '13.5'}), 'tilt_stiffness', 'must not exceed sqrt(stiffness normal_stiffness)')
         self.refused(two_way(chain={'n_blocks': '2', 'coupling': '1'}), 'normal_mass', 'is for one block')
-        self.refused(two_way({'contact': "'rigid'"}, time={'rtol': '1e-5', 'dt': None}), 'contact', 'normal_mass')
+        self.refused(two_way({'contact': "'rigid'"}, time={'rtol': '1e-5', 'dt': None, 'beta': '0.25'}), 'contact', 'without beta')
 
     def test_the_input_with_a_picture(self):
         text = (INPUTS / 'mode_coupling.nml').read_text(encoding='utf-8')

@@ -50,15 +50,17 @@ class Warnings(Program):
         self.assertEqual(self.warnings(TEXTBOOK.replace('mu_k=0.2', 'mu_k=0.3')), [])
         self.assertEqual(self.warnings(TEXTBOOK.replace('t_end=3', 't_end=0.2')), [])
 
-    def test_friction_that_drops_at_once_in_two_ways_to_move_asks_for_fixed_steps(self):
+    def test_friction_that_drops_at_once_in_two_ways_to_move_asks_for_continuous_time(self):
         text = """&friction law='static_kinetic', alpha_n=4655, alpha_t=10761, mu_s=0.427, mu_k=0.15, d_c=2122 /
             &slider mass=2.908e-5, stiffness=4.6, area=0.326, normal_traction=1, normal_mass=1e-5, normal_stiffness=1.96,
                 tilt_stiffness=-1.38 /
             &drive velocity=3.77e-3 / """
-        told = [line for line in self.warnings(text + '&time t_end=12.5, rtol=1e-5 /') if 'balance of energy' in line]
+        told = [line for line in self.warnings(text + '&time t_end=12.5, rtol=1e-5, beta=0.25 /') if 'balance of energy' in line]
         self.assertEqual(len(told), 1)
-        self.assertIn('take fixed steps (dt)', told[0])
-        self.assertFalse([line for line in self.warnings(text + '&output interval=1000 /\n&time t_end=12.5, dt=1e-4 /') if 'balance of energy' in line])
+        self.assertIn('take adaptive steps (rtol) without beta, gamma and rho_infinity', told[0])
+        for time in ('rtol=1e-5', 'dt=1e-4'):
+            told = self.warnings(text + f'&output interval=1000 /\n&time t_end=12.5, {time} /')
+            self.assertFalse([line for line in told if 'balance of energy' in line])
 
     def test_energy_that_is_out_of_balance_is_told_with_its_part(self):
         lines = self.warnings(CHAIN)
