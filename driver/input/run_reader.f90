@@ -7,7 +7,7 @@ module run_reader
     use drive_reader, only : read_drive
     use friction_mod, only : facts => law_facts, friction_facts, onset_gradual
     use input_fingerprint, only : listing_fingerprint
-    use law_facts, only : has_r, typical_strength
+    use law_facts, only : has_r, pressure_effect, typical_strength
     use law_input, only : refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
@@ -49,6 +49,7 @@ contains
         call read_contact(file, run)
         call check_damper(file, run)
         call check_massless(file, run)
+        call check_pressing(file, run)
         call derive_slip_rate(file, run)
         call read_events(file, run)
         call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
@@ -360,6 +361,27 @@ contains
                 // 'nothing else tells the velocity of the block under this law')
         end if
     end subroutine check_massless
+
+    !> A state that grows as the normal traction vanishes, in adaptive steps that are not in
+    !> continuous time: where it would leave the range of numbers the contact counts as open
+    !> (`adaptive_steps`), which must not be far from the truth.
+    subroutine check_pressing(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+        real(dp), parameter :: largest = 28.0_dp   !! open below 8e-4 of the largest normal traction
+        logical :: vanishes
+
+        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
+        if (.not. run%adaptive .or. run%one_by_itself() .and. .not. run%newmark) return
+        associate (d => run%drive)
+            vanishes = minval(d%normal) - d%amplitude <= 0.0_dp .and. (d%amplitude > 0.0_dp &
+                .or. any(abs(d%normal_rate) > 0.0_dp))
+        end associate
+        if (vanishes .and. pressure_effect(run%props, run%chain%constants) > largest) call &
+            file%reject('friction', 'alpha', 'must not exceed 28 b with a normal traction that ' &
+            // 'vanishes in adaptive steps (&time rtol) of chains, or with beta, gamma or ' &
+            // 'rho_infinity: the state would leave the range of numbers')
+    end subroutine check_pressing
 
     !> The spring of the contact, which continuous time can do without.
     subroutine read_contact(file, run)

@@ -7,7 +7,7 @@ module law_facts
     implicit none
     private
 
-    public :: cohesion_of_each, has_r, internal_variable, typical_strength
+    public :: cohesion_of_each, has_r, internal_variable, pressure_effect, typical_strength
 
 contains
 
@@ -42,6 +42,22 @@ contains
         law = friction_facts(props)
         strength = law%typical_coefficient * pressure + law%cohesion
     end function typical_strength
+
+    !> How much the logarithm of what a law remembers falls with that of the pressure.
+    !> Of several blocks it is the largest.
+    pure function pressure_effect(props, constants) result(effect)
+        real(dp), intent(in) :: props(:)                    !! constants of the friction routine
+        real(dp), intent(in), optional :: constants(:, :)   !! of each block, one row a block
+        real(dp) :: effect                                  !! [-]
+        integer :: pressed, evolves
+
+        effect = 0.0_dp
+        pressed = friction_place(friction_law_of(props), 'alpha')
+        if (pressed < 1) return
+        evolves = friction_place(friction_law_of(props), 'b')
+        effect = props(pressed) / props(evolves)
+        if (present(constants)) effect = maxval(constants(:, pressed) / constants(:, evolves))
+    end function pressure_effect
 
     !> Tractions that contacts carry without pressure. The place of that constant is asked for once:
     !> asking for all facts of each point takes longer than a step.

@@ -106,6 +106,9 @@ contains
         self%dt = run%dt
         self%dt_min = run%dt_min
         self%dt_max = run%dt_max
+        ! what swings within a step is not seen at its ends
+        if (run%drive%amplitude > 0.0_dp) self%dt_max = min(run%dt_max, 1.0_dp &
+            / (16.0_dp * run%drive%frequency))
         self%every = run%every
     end subroutine take_run
 

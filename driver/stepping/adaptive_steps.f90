@@ -10,12 +10,13 @@ module adaptive_steps
     use chain_parts, only : choose_method
     use contact_forces, only : apply_normal_traction
     use energies, only : account
-    use friction_mod, only : friction_coefficient_change, friction_facts, &
-        friction_no_convergence, law_facts, prop_alpha_n, statev_dissipation, statev_mu, statev_r, &
+    use friction_mod, only : facts => law_facts, friction_coefficient_change, friction_facts, &
+        friction_no_convergence, prop_alpha_n, statev_dissipation, statev_mu, statev_r, &
         statev_slip, statev_status, statev_u_n
+    use law_facts, only : pressure_effect
     use run_settings, only : settings
     use slider_system, only : set_accelerations, slider, slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
+    use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use time_integrator, only : newmark
     use turning_times, only : turn
     implicit none
@@ -30,9 +31,11 @@ module adaptive_steps
 
     type, extends(integrator) :: adaptive
         class(newmark), allocatable :: method
-        type(law_facts), allocatable :: laws(:)   !! of each block; one, if all are alike
+        type(facts), allocatable :: laws(:)   !! of each block; one, if all are alike
         real(dp) :: tolerated = 0.0_dp     !! error in a step, as a spring force [F]
         real(dp) :: pressing = 0.0_dp      !! largest normal force [F]
+        real(dp) :: open_below = 0.0_dp    !! normal traction that counts as none, where it varies
+                                           !! [F/L^2]
         integer :: order = 1               !! of the method, with the friction law in it
         real(dp) :: stiffness = 0.0_dp     !! against displacements in the last step [F/L]
         real(dp) :: last_error = 1.0_dp    !! of the step before, part of the tolerated one
@@ -43,7 +46,7 @@ module adaptive_steps
         type(slider_state), private :: error      !! room for an estimate
     contains
         procedure :: prepare, step, visit, why_stopped
-        procedure, private :: try, try_twice, error_of, extrapolate, reversal
+        procedure, private :: try, try_twice, error_of, extrapolate, reversal, none_below, load
     end type adaptive
 
 contains
@@ -53,7 +56,7 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start
-        type(law_facts) :: law
+        type(facts) :: law
         integer :: i
 
         call self%take_run(run, system, start)
@@ -66,6 +69,9 @@ contains
             i = 1, size(system%constants, 1))]
         self%tolerated = run%rtol * max(law%typical_coefficient * self%pressing + run%area &
             * law%cohesion, tiny(1.0_dp) / epsilon(1.0_dp))
+        if (.not. (any(self%laws%cohesion > 0.0_dp) .or. run%across%free())) self%open_below &
+            = run%drive%largest_normal() * max(vanishing_part(law%traits%stiff, run%rtol), &
+            within_range(pressure_effect(system%props, system%constants)))
         self%part = 1.0_dp / (2.0_dp**self%order - 1.0_dp)
         self%middle = start
         self%error = start
@@ -88,6 +94,40 @@ contains
         call self%explain_status(status, why_too_short(self%dt_min), why)
     end subroutine why_stopped
 
+    !> Part of the largest normal traction down to which what the law remembers stays in the range
+    !> of numbers, if it depends on the pressure.
+    pure function within_range(effect) result(part)
+        real(dp), intent(in) :: effect   !! of the pressure [-]
+        real(dp) :: part
+        real(dp), parameter :: most = 200.0_dp   !! change of its logarithm
+
+        part = 0.0_dp
+        if (effect > 0.0_dp) part = exp(-most / effect)
+    end function within_range
+
+    !> The normal traction that counts as none in a piece of the programme: one that does not vary
+    !> is taken as it is.
+    pure function none_below(self, piece) result(pressure)
+        class(adaptive), intent(in) :: self
+        integer, intent(in) :: piece
+        real(dp) :: pressure   !! [F/L^2]
+
+        pressure = 0.0_dp
+        if (self%drive%amplitude > 0.0_dp) pressure = self%open_below
+        if (abs(self%drive%normal_rate(piece)) > 0.0_dp) pressure = self%open_below
+    end function none_below
+
+    !> The normal traction at a time [F/L^2].
+    pure function load(self, time, piece)
+        class(adaptive), intent(in) :: self
+        real(dp), intent(in) :: time   !! [T]
+        integer, intent(in) :: piece
+        real(dp) :: load
+
+        load = self%drive%normal_traction(time, piece)
+        if (load <= self%none_below(piece)) load = min(0.0_dp, load)
+    end function load
+
     !> One step from `old` to `time`, in one piece of the programme.
     subroutine try(self, old, time, piece, new, report, guess)
         class(adaptive), intent(inout) :: self
@@ -99,7 +139,7 @@ contains
         real(dp), intent(in), optional :: guess(:)   !! of the displacements [L]
 
         call self%method%step(self%system, self%origin + self%drive%position(time), &
-            self%drive%normal_traction(time, piece), time - old%time, old, new, report, guess)
+            self%load(time, piece), time - old%time, old, new, report, guess)
         if (report%status >= 0) call account(self%system, self%method%sums(self%system, old, new), &
             old, new)
         new%time = time
@@ -120,14 +160,14 @@ contains
         power = 1.0_dp / (self%order + 1)
         piece = self%drive%piece(old%time)
         limit = next_limit(self%drive, self%every, self%t_end, shortest, old%time)
-        call apply_normal_traction(self%system, self%drive%normal_traction(old%time, piece), old, &
-            pressed)
+        call apply_normal_traction(self%system, self%load(old%time, piece), old, pressed)
         event = huge(event)
         cuts = 0
         do
             end = end_of_step(old%time, min(old%time + self%dt, event) - old%time, limit)
-            call find_opening(self%drive, piece, 0.0_dp, old%normal <= 0.0_dp, old%time, end, &
-                kink, after)
+            call find_opening(self%drive, piece, self%none_below(piece), old%normal <= 0.0_dp, &
+                old%time, end, kink, after)
+            if (old%normal <= 0.0_dp .and. self%open_below > 0.0_dp) kink = after   ! as it opened
             if (matters(kink) .and. .not. self%system%across%free()) end = kink
             dt = end - old%time
             call self%try_twice(old, end, piece, report)

@@ -18,7 +18,7 @@ module continuous_steps
     use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
         phase_open, place, slip, unknowns, velocity
     use slider_system, only : slider, slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit, why_too_short
+    use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
     use trial_step, only : look_at, trial
     implicit none
@@ -60,8 +60,6 @@ contains
 
         call self%take_run(run, system, start)
         self%in_rates = .true.
-        if (run%drive%amplitude > 0.0_dp) self%dt_max = min(run%dt_max, 1.0_dp &
-            / (16.0_dp * run%drive%frequency))
         self%rtol = run%rtol
         self%largest = run%drive%largest_normal()
         associate (normal => run%drive%normal)
@@ -74,7 +72,9 @@ contains
             eq%drive = run%drive
             eq%across = system%across
             self%implicit = eq%surface%traits%stiff
-            eq%open_below = self%largest * vanishing(self)
+            eq%open_below = self%largest * vanishing_part(eq%surface%traits%stiff, run%rtol)
+            if (eq%surface%traits%memory == 1) eq%open_below = self%largest * max(1.0e-6_dp, &
+                16.0_dp * epsilon(1.0_dp) / run%rtol)   ! R is lost in its round-off
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, eq%open_below)
@@ -110,22 +110,6 @@ contains
         if (damping >= least_damping * critical) return
         dt = neutral * sqrt(mass / stiffness)
     end function amplifying_step
-
-    !> Part of the largest normal traction below which a contact under a varying one counts as open:
-    !> what is left out is an impulse, and of the order of the square. As the normal traction
-    !> vanishes, the slip rates of rate-and-state friction have no bound, and the R of the
-    !> subloading law, traction over strength, is lost in its round-off.
-    pure function vanishing(self) result(part)
-        class(continuous), intent(in) :: self
-        real(dp) :: part
-
-        part = 0.0_dp
-        if (self%block%equations%surface%traits%stiff) then
-            part = 1.0e-2_dp * sqrt(self%rtol)
-        else if (self%block%equations%surface%traits%memory == 1) then
-            part = max(1.0e-6_dp, 16.0_dp * epsilon(part) / self%rtol)
-        end if
-    end function vanishing
 
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self

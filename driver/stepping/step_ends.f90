@@ -6,7 +6,7 @@ module step_ends
     implicit none
     private
 
-    public :: end_of_step, find_opening, next_limit, why_too_short
+    public :: end_of_step, find_opening, next_limit, vanishing_part, why_too_short
 
 contains
 
@@ -42,6 +42,18 @@ contains
             end = start + 0.5_dp * (limit - start)
         end if
     end function end_of_step
+
+    !> Part of the largest normal traction below which a contact under a varying one counts as open:
+    !> what is left out is an impulse, and of the order of the square. As the normal traction
+    !> vanishes, the slip rates of rate-and-state friction have no bound, and a state that depends
+    !> on the pressure has none either.
+    pure function vanishing_part(stiff, rtol) result(part)
+        logical, intent(in) :: stiff     !! slip rates of the law go through decades
+        real(dp), intent(in) :: rtol
+        real(dp) :: part
+
+        part = merge(1.0e-2_dp * sqrt(rtol), 0.0_dp, stiff)
+    end function vanishing_part
 
     !> When the normal traction falls to a threshold within a step, or rises above: the last moment
     !> before and the first one after; huge if neither happens.

@@ -100,6 +100,31 @@ class Phases(Program):
         for other in dissipated[1:]:
             self.assertAlmostEqual(other, dissipated[0], delta=1e-3 * dissipated[0])
 
+    def test_chains_whose_normal_traction_vanishes_do_as_their_blocks_do_in_continuous_time(self):
+        # longer steps went over whole openings; the state after Linker and Dieterich had no value where a step ends at no pressure
+        rate_state = 'a=0.01, b=0.015, d_c=0.01, v0=0.001, f0=0.6'
+        for law in (f"'linker_dieterich', {rate_state}, alpha=0.2", f"'linker_dieterich', {rate_state}, alpha=0.4", f"'rate_and_state', {rate_state}",
+                    "'coulomb', mu=0.6", "'subloading', mu_s=0.6, mu_k=0.5, kappa=10, xi=1, m=1000"):
+            for load in ('normal_amplitude=12, normal_frequency=0.2', "duration=2,1,2,1,4, normal=10,0,10,1,10, normal_change='ramp'"):
+                text = f"""&friction law={law}, alpha_n=1000, alpha_t=1000 /
+                    &slider mass=1e-3, stiffness=1, damping=0.01, normal_traction=10 /
+                    &drive velocity=0.1, {load} /
+                    &time t_end=10, rtol=1e-6 / """
+                one, two = (self.table(text + chain) for chain in ('', '&chain n_blocks=2, coupling=5 /'))
+                self.assertAlmostEqual(two[0][-1]['displacement'], one[0][-1]['displacement'], delta=3e-3 * one[0][-1]['displacement'])
+                for energy in ('drive', 'dissipated'):
+                    self.assertAlmostEqual(two[1][energy], 2 * one[1][energy], delta=1.5e-3 * two[1]['drive'])
+
+    def test_a_state_that_a_vanishing_normal_traction_takes_out_of_range_is_refused_in_chains(self):
+        text = """&friction law='linker_dieterich', a=0.01, b=0.01, d_c=0.01, v0=0.001, f0=0.6, alpha=0.281, alpha_n=1000, alpha_t=1000 /
+            &slider mass=1e-3, stiffness=1, damping=0.01, normal_traction=10 /
+            &drive velocity=0.1, normal_amplitude=10, normal_frequency=0.2 /
+            &time t_end=1, rtol=1e-4 / """
+        self.refused(text + '&chain n_blocks=2, coupling=5 /', 'alpha', 'must not exceed 28 b')
+        self.refused(text.replace('rtol', 'beta=0.25, rtol'), 'alpha', 'must not exceed 28 b')
+        self.table(text)
+        self.table(text.replace('amplitude=10', 'amplitude=9') + '&chain n_blocks=2, coupling=5 /')
+
     def test_a_massless_block_jumps_with_its_drive_spring(self):
         # static friction 18.6, of it 0.5 left: both springs give up (drop)^2/2 (1/alpha + area/stiffness)
         _, energies = self.table("""&friction law='slip_weakening_healing', alpha_n=1.2, alpha_t=11.8, mu_s=0.35, mu_k=0.31, d_c=2e-4, xi=0.0356 /
