@@ -32,7 +32,7 @@ contains
         type(slider_state), intent(inout) :: new
 
         new%drive_work = old%drive_work + 0.5_dp * sum(sums%spring) * (new%drive - old%drive)
-        new%damped = old%damped + 0.5_dp * system%damping * sums%drag
+        new%damped = old%damped + 0.5_dp * system%damping * sums%drag + sums%relaxed
         if (.not. system%across%free()) return
         associate (du_n => new%statev(1, statev_u_n) - old%statev(1, statev_u_n))
             new%drive_work = new%drive_work - 0.5_dp * system%area * (old%load + new%load) * du_n

@@ -17,7 +17,8 @@ module step_sums
         real(dp) :: slip(2) = 0.0_dp       !! accumulated [L]
         real(dp) :: drag = 0.0_dp          !! twice the mean velocity times the way [L^2/T]
         real(dp) :: let_go = 0.0_dp        !! see `let_go_by` [F L]
-        real(dp) :: jumped = 0.0_dp        !! see `jump_of` [F L]
+        real(dp) :: jumped = 0.0_dp        !! see `add_jump` [F L]
+        real(dp) :: relaxed = 0.0_dp       !! by dampers after that [F L]
         real(dp) :: fastest = 0.0_dp       !! largest velocity at the end, no sum [L/T]
         real(dp) :: most_slip = 0.0_dp     !! of a block in the step, no sum [L]
     contains
@@ -48,8 +49,8 @@ contains
             slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
             back = abs(old%statev(i, statev_u_et)) - abs(new%statev(i, statev_u_et))
             sums%most_slip = max(sums%most_slip, slip)
-            if (slip > 0.0_dp .and. back > 0.0_dp) sums%jumped = sums%jumped + jump_of(system, &
-                old, new, i, slip, back)
+            if (slip > 0.0_dp .and. back > 0.0_dp) call add_jump(system, old, new, i, slip, back, &
+                sums)
         end do
     end function sum_blocks
 
@@ -76,28 +77,37 @@ contains
         energy = energy + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / system%stiffness
     end subroutine let_go_by
 
-    !> What a contact spring gives up at once where friction falls, and with it the drive spring of
-    !> a block without mass and damping: of it the states of friction count too little, however
-    !> short the step, since they take its slip under the traction at its end. What a block gains or
-    !> loses by its way in the step is no part of it: an error of the step.
-    pure function jump_of(system, old, new, i, slip, back) result(energy)
+    !> Adds what a contact spring gives up at once where friction falls, and with it the drive
+    !> spring of a block without mass: of it the states of friction count too little, however short
+    !> the step, since they take its slip under the traction at its end. What a block gains or loses
+    !> by its way in the step is no part of it: an error of the step.
+    !>
+    !> Without mass, a damper lets the drive spring relax in the time C/K after the drop. The mean
+    !> of the velocities at the ends of a step misses the one that the block has as it begins.
+    pure subroutine add_jump(system, old, new, i, slip, back, sums)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: old, new
         integer, intent(in) :: i        !! block
         real(dp), intent(in) :: slip    !! in the step, > 0 [L]
         real(dp), intent(in) :: back    !! way that the contact spring goes back, > 0 [L]
-        real(dp) :: energy              !! [F L]
-        real(dp) :: alpha               !! [F/L^3]
+        type(block_sums), intent(inout) :: sums
+        real(dp) :: drop                !! of the friction force [F]
+        real(dp) :: contact, both       !! what that spring gives up, and with the drive's [F L]
         real(dp) :: counted             !! dissipated beyond slip under the last traction [F L]
 
-        alpha = alpha_of(system, i)
-        energy = 0.5_dp * system%area * alpha * back**2
-        if (.not. (system%mass > 0.0_dp .or. system%damping > 0.0_dp)) energy = energy &
-            + 0.5_dp * (system%area * alpha * back)**2 / system%stiffness
+        drop = system%area * alpha_of(system, i) * back
+        contact = 0.5_dp * drop * back
+        both = contact
+        if (.not. system%mass > 0.0_dp) both = contact + 0.5_dp * drop**2 / (system%stiffness &
+            + system%damping / (new%time - old%time))
         counted = system%area * (new%statev(i, statev_dissipation) - old%statev(i, &
             statev_dissipation)) - abs(new%friction(i)) * slip
-        energy = max(0.0_dp, energy - counted)
-    end function jump_of
+        both = max(0.0_dp, both - counted)
+        contact = max(0.0_dp, contact - counted)
+        if (.not. system%damping > 0.0_dp) contact = both
+        sums%jumped = sums%jumped + contact
+        sums%relaxed = sums%relaxed + (both - contact)
+    end subroutine add_jump
 
     !> Takes in the sums over further blocks of the same step.
     pure subroutine add(self, others)
@@ -110,6 +120,7 @@ contains
         self%drag = self%drag + others%drag
         self%let_go = self%let_go + others%let_go
         self%jumped = self%jumped + others%jumped
+        self%relaxed = self%relaxed + others%relaxed
         self%fastest = max(self%fastest, others%fastest)
         self%most_slip = max(self%most_slip, others%most_slip)
     end subroutine add

@@ -4,8 +4,8 @@ module phase_changes
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
     use friction_mod, only : friction_update, law_state, load_rates, onset_drops, onset_gradual, &
-        onset_yields, prop_alpha_n, statev_r, statev_size, statev_slip, statev_status, &
-        statev_u_et, statev_u_n
+        onset_yields, prop_alpha_n, prop_alpha_t, statev_r, statev_size, statev_slip, &
+        statev_status, statev_u_et, statev_u_n
     use slider_rates, only : contact_motion, controlled, dissipated, elastic, extension, memory, &
         phase_capped, phase_open, phase_slide, phase_stick, ratio, slider_equations, slip, &
         unknowns, velocity
@@ -298,30 +298,54 @@ contains
         end associate
     end subroutine jump
 
-    !> Slip without time, as far as the friction routine lets the contact slip, if that is far.
+    !> Slip without time, as far as the friction routine lets the contact slip, if that is far. A
+    !> block without mass and damper goes along: to friction its drive spring and its contact spring
+    !> are one then.
     subroutine slip_at_once(block, pressure, before)
         type(moving_block), intent(inout) :: block
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp), intent(in) :: before     !! elastic displacement, in the sense of the slip [L]
-        real(dp), parameter :: push = 1.0e-12_dp, far = 1.0e-6_dp   !! parts of that
-        real(dp) :: statev(statev_size), traction(2), tangent(2, 2)
+        real(dp), parameter :: far = 1.0e-6_dp   !! part of that
+        real(dp) :: statev(statev_size)
+        real(dp) :: part   !! of the contact spring's stiffness [-]
         integer :: status
 
         associate (eq => block%equations, y => block%y)
-            statev = 0.0_dp
-            statev(statev_status) = 1.0_dp
-            statev(statev_u_n) = -pressure / block%props(prop_alpha_n)
-            statev(statev_u_et) = before
-            statev(statev_r) = y(memory)
-            call friction_update([0.0_dp, push * before], 0.0_dp, block%props, statev, &
-                traction, tangent, status)
+            part = 1.0_dp
+            call let_slip(block, pressure, before, part, statev, status)
             if (status < 0 .or. statev(statev_slip) < far * before) return
+            if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
+                part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
+                call let_slip(block, pressure, before, part, statev, status)
+                if (status < 0) return
+            end if
             y(slip) = y(slip) + statev(statev_slip)
-            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (before**2 &
-                - statev(statev_u_et)**2)
-            y(elastic) = sign(statev(statev_u_et), y(elastic))
+            y(dissipated) = y(dissipated) + 0.5_dp * eq%alpha * (before**2 / part - part &
+                * statev(statev_u_et)**2)
+            y(elastic) = sign(part * statev(statev_u_et), y(elastic))
+            if (part < 1.0_dp) y(extension) = eq%area * eq%alpha * y(elastic) / eq%stiffness
             y(memory) = statev(statev_r)
         end associate
     end subroutine slip_at_once
+
+    !> What the friction routine makes of a contact on a spring of a part of its stiffness.
+    subroutine let_slip(block, pressure, before, part, statev, status)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: pressure, before, part   !! as of `slip_at_once`
+        real(dp), intent(out) :: statev(statev_size)
+        integer, intent(out) :: status
+        real(dp), parameter :: push = 1.0e-12_dp   !! part of the elastic displacement
+        real(dp) :: props(size(block%props)), traction(2), tangent(2, 2)
+
+        props = block%props
+        props(prop_alpha_t) = part * props(prop_alpha_t)
+        statev = 0.0_dp
+        statev(statev_status) = 1.0_dp
+        statev(statev_u_n) = -pressure / props(prop_alpha_n)
+        statev(statev_u_et) = before / part
+        statev(statev_r) = block%y(memory)
+        call friction_update([0.0_dp, push * statev(statev_u_et)], 0.0_dp, props, statev, &
+            traction, tangent, status)
+    end subroutine let_slip
 
 end module phase_changes
