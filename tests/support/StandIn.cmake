@@ -11,11 +11,11 @@ function(add_pfunit_ctest name)
     set(generated ${CMAKE_CURRENT_BINARY_DIR}/${name}.generated)
     file(MAKE_DIRECTORY ${generated})
     add_custom_command(
-        OUTPUT ${generated}/tests.f90 ${generated}/main.f90
+        OUTPUT ${generated}/tests.F90 ${generated}/main.f90
         COMMAND Python3::Interpreter ${preprocess} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_TEST_SOURCES}
-                ${generated}/tests.f90 ${generated}/main.f90
+                ${generated}/tests.F90 ${generated}/main.f90
         DEPENDS ${preprocess} ${arg_TEST_SOURCES})
-    add_executable(${name} ${generated}/tests.f90 ${generated}/main.f90)
+    add_executable(${name} ${generated}/tests.F90 ${generated}/main.f90)
     set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${generated})
     target_link_libraries(${name} PRIVATE funit_stand_in stickslip_flags ${arg_LINK_LIBRARIES})
     add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${arg_WORKING_DIRECTORY})
