@@ -543,7 +543,7 @@ contains
         do i = 1, block%n
             trial(i) = block%trial(i)
             ! a quotient of all points: under a condition it would be one of zeros for the others
-            slip(i) = (trial(i) - constants(i, c_cap)) / block%stiffness(i)
+            slip(i) = max(trial(i) - constants(i, c_cap), 0.0_wp) / block%stiffness(i)
             held(i) = 0.0_wp
             if (trial(i) <= own_strength(i) * (1.0_wp + verge)) held(i) = 1.0_wp
             if (held(i) > 0.0_wp) block%trial(i) = 1.01_wp * own_strength(i)   ! of no account

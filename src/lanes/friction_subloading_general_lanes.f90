@@ -118,18 +118,18 @@ contains
                 * mu * (now%r(i) + lack)) / (block%stiffness(i) + block%pressure(i) * (mu * rate &
                 - now%r(i) * fall_of_coefficient(constants(i, c_kappa), c(i), iw)))
             move%dr = rate * move%ds + lack
-            if (block%left(i) > 0.0_wp) then
-                at = slip_guess(block%slip(i), now%r(i), now%e(i))
-                if (max(block%stiffness(i) * abs(move%ds) - small_step * block%trial(i), &
-                    constants(i, c_m) * abs(move%ds) - small_step * (now%r(i) + ms), &
-                    abs(move%dr) - small_step * min(now%r(i), now%e(i))) <= 0.0_wp) then
-                    block%left(i) = 0.0_wp
-                end if
-                at = moved(at, move)
-                block%slip(i) = at%s
-                now%r(i) = at%r
-                now%e(i) = at%e
-            end if
+            ! no store under a condition: what only that needs would be computed under it, too, of
+            ! zeros in the lanes that it leaves out
+            move%ds = move%ds * block%left(i)
+            move%dr = move%dr * block%left(i)
+            at = slip_guess(block%slip(i), now%r(i), now%e(i))
+            block%left(i) = merge(block%left(i), 0.0_wp, max(block%stiffness(i) * abs(move%ds) &
+                - small_step * block%trial(i), constants(i, c_m) * abs(move%ds) - small_step &
+                * (now%r(i) + ms), abs(move%dr) - small_step * min(now%r(i), now%e(i))) > 0.0_wp)
+            at = moved(at, move)
+            block%slip(i) = at%s
+            now%r(i) = at%r
+            now%e(i) = at%e
             still = max(still, block%left(i))
         end do
     end subroutine step
@@ -186,15 +186,12 @@ contains
             still = 0.0_wp
             do i = 1, block%n
                 ms = constants(i, c_m) * block%slip(i)
-                dr = ratio_gain(now%below(i), ms, now%bend) * ratio_lack(now%r(i), now%e(i), &
-                    block%r(i), ms, now%above(i), now%below(i))
-                if (active(i) > 0.0_wp) then
-                    if (abs(dr) <= small_step * min(now%r(i), now%e(i))) active(i) = 0.0_wp
-                    at = moved(slip_guess(0.0_wp, now%r(i), now%e(i)), slip_move(0.0_wp, dr, &
-                        0.0_wp))
-                    now%r(i) = at%r
-                    now%e(i) = at%e
-                end if
+                dr = active(i) * (ratio_gain(now%below(i), ms, now%bend) * ratio_lack(now%r(i), &
+                    now%e(i), block%r(i), ms, now%above(i), now%below(i)))
+                active(i) = merge(active(i), 0.0_wp, abs(dr) > small_step * min(now%r(i), now%e(i)))
+                at = moved(slip_guess(0.0_wp, now%r(i), now%e(i)), slip_move(0.0_wp, dr, 0.0_wp))
+                now%r(i) = at%r
+                now%e(i) = at%e
                 still = max(still, active(i))
             end do
             if (still <= 0.0_wp) exit

@@ -25,12 +25,23 @@ constants_kernel stickslip_constants_kernel, stickslip_constants_kernel_sse2, st
 
 enum instruction_set { SSE2, AVX2, AVX512 };
 
-static enum instruction_set instructions(void)
+#ifndef STICKSLIP_AT_MOST   /* tests try the lesser copies, too */
+#define STICKSLIP_AT_MOST AVX512
+#endif
+
+static enum instruction_set best_instructions(void)
 {
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")
         && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd"))
         return AVX512;
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? AVX2 : SSE2;
+}
+
+static enum instruction_set instructions(void)
+{
+    enum instruction_set best = best_instructions();
+
+    return best < STICKSLIP_AT_MOST ? best : STICKSLIP_AT_MOST;
 }
 
 subloading_kernel stickslip_subloading_kernel, stickslip_subloading_kernel_sse2, stickslip_subloading_kernel_avx2,
