@@ -305,10 +305,28 @@ contains
         else
             trial%dt = motion%dt
             trial%start = old%inner
+            if (stiffness * trial%distance > surface%tau_max) call lower_to_cap(surface%tau_max, &
+                blur, trial)
             if (surface%follows_path) trial%start%r = reload%share * trial%start%r
             call slip_update(surface, plane, trial, reload, old, new, answer, status)
         end if
     end subroutine tangential_update
+
+    !> A trial that round-off alone holds above the cap is put just below it: so a surface which
+    !> creeps under any traction creeps there, whatever the last bits say, as others stick.
+    pure subroutine lower_to_cap(tau_max, blur, trial)
+        real(wp), intent(in) :: tau_max   !! below the trial [F/L^2]
+        real(wp), intent(in) :: blur      !! round-off of displacements, as in `contact_motion` [L]
+        type(tangential_trial), intent(inout) :: trial
+        real(wp) :: share
+
+        if (trial%stiffness * trial%distance > tau_max * (1.0_wp + verge) + trial%stiffness &
+            * blur) return
+        share = (1.0_wp - 2.0_wp * epsilon(share)) * (tau_max / (trial%stiffness * trial%distance))
+        trial%q(1) = share * trial%q(1)
+        trial%q(2) = share * trial%q(2)
+        trial%distance = share * trial%distance
+    end subroutine lower_to_cap
 
     !> Round-off of a displacement that is not known better, as a share of the strength.
     pure function relative_blur(surface, blur, new, pressure) result(share)
