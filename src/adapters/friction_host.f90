@@ -67,6 +67,7 @@ contains
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, instant, props, statev, &
             traction, tangent, status)
         if (status < 0) return
+        status = friction_ok   ! where nothing moves, no other equilibrium is within reach
         tangent = 0.0_wp
         tangent(1, 1) = props(prop_alpha_n)
         do i = 2, ndir
@@ -91,6 +92,7 @@ contains
         if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
         call friction_tangential(du, pressure, instant, props, statev, tau, by_du, by_p, status)
         if (status < 0) return
+        status = friction_ok   ! as above
         by_p = 0.0_wp
         by_du = 0.0_wp
         do i = 1, size(du)

@@ -90,8 +90,10 @@ static int update(const double *du, double dt, const geometry *form, int nprops,
             return status;
     if (status == FRICTION_ZERO_TIME_INCREMENT) {
         status = friction_update(form->contact, du, instant, nprops, props, 8, statev, traction, tangent);
-        if (status >= 0)
+        if (status >= 0) {
             elastic_tangent(form, props, tangent);
+            status = FRICTION_OK;   /* where nothing moves, no other equilibrium is within reach */
+        }
     }
     return status;
 }
