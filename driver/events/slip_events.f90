@@ -8,8 +8,9 @@
 !> block follows a normal traction that falls. In a hold the drive counts as fast as before.
 !> Everything is looked at in the sense of the loading: a mirrored motion has the same events.
 !>
-!> Where a fall goes on slowly - into steady sliding - the event ends once that has lasted as long
-!> as the fall before.
+!> Where a fall goes on slowly - into steady sliding - the event ends when that has lasted as long
+!> as the fall before. This moment, and the one from which on slip is slow, are found between the
+!> steps: mean slip rates are those of the middles of the steps.
 !>
 !> A force that does not change but for round-off is a plateau: an event begins at the end of one,
 !> and is over at the start of one.
@@ -77,6 +78,9 @@ module slip_events
         type(slip_event), private :: current = slip_event()           !! the fall so far
         logical, private :: is_event = .false.    !! it was fast enough to be an event
         real(dp), private :: fast_until = 0.0_dp  !! it was so at this time, if ever [T]
+        real(dp), private :: rate = 0.0_dp        !! slip rate in the step before [L/T]
+        real(dp), private :: middle = 0.0_dp      !! of that step [T]
+        type(moment), private :: since = moment() !! start of this step, in the sense of the loading
         logical, private :: any_before = .false.
         real(dp), private :: last_onset = 0.0_dp  !! of the event before [T]
     contains
@@ -120,6 +124,7 @@ contains
             self%reached = before%drive
             self%held = before%holds
         end if
+        self%since = before
         release = freed(self, now, new%time - old%time)
         self%held = now%holds
         slack = self%drop / self%stiffness
@@ -139,6 +144,8 @@ contains
             self%reached = max(self%reached, now%drive)
         end if
         self%change = abs(new%force - old%force)
+        self%rate = slip_rate
+        self%middle = 0.5_dp * (old%time + new%time)
         if (last .and. slip_rate <= limit(self)) call self%conclude(events)
     end subroutine follow
 
@@ -231,23 +238,45 @@ contains
         type(event_finder), intent(inout) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step [L/T]
+        type(moment) :: end
+        real(dp) :: latest   !! end of an event that goes on slowly [T]
 
         self%fastest = max(self%fastest, now%velocity)
         self%slipping = max(self%slipping, slip_rate)
         self%driving = max(self%driving, self%speed)
-        if (slip_rate > limit(self)) self%fast_until = now%time
+        if (slip_rate > limit(self)) then
+            self%fast_until = now%time
+        else if (self%rate > limit(self)) then
+            self%fast_until = max(self%peak%time, slow_from(self, now, slip_rate))
+        end if
         if (now%force >= self%trough%force - uncertainty(self, now)) return
         self%trough = now
-        associate (fast => self%fast_until - self%peak%time, slow => now%time - self%fast_until)
-            if (self%is_event .and. slow > fast) return
-        end associate
+        end = now
+        latest = 2.0_dp * self%fast_until - self%peak%time
+        if (now%time > latest .and. self%slipping > limit(self)) then
+            if (self%since%time < latest) end = between_moments(self%since, now, latest)
+            if (self%is_event .and. self%since%time >= latest) return
+            if (.not. (self%is_event .or. self%peak%force - end%force > self%drop)) end = now
+        end if
         self%current%onset = self%peak%time
-        self%current%duration = now%time - self%peak%time
-        self%current%force_drop = self%peak%force - now%force
-        self%current%slip = now%slip - self%peak%slip
+        self%current%duration = end%time - self%peak%time
+        self%current%force_drop = self%peak%force - end%force
+        self%current%slip = end%slip - self%peak%slip
         self%current%peak_velocity = self%fastest
         self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit(self)
     end subroutine follow_fall
+
+    !> When slip becomes slow: by the mean slip rates of a fast step and of the next one, which is
+    !> not, as rates in their middles [T].
+    pure function slow_from(self, now, slip_rate) result(time)
+        type(event_finder), intent(in) :: self
+        type(moment), intent(in) :: now
+        real(dp), intent(in) :: slip_rate   !! in the step that is not [L/T]
+        real(dp) :: time
+
+        time = self%middle + (self%rate - limit(self)) / (self%rate - slip_rate) * (0.5_dp &
+            * (self%since%time + now%time) - self%middle)
+    end function slow_from
 
     !> The fall is over: adds it to the events if it is one.
     pure subroutine conclude(self, events)
@@ -273,16 +302,23 @@ contains
             sense * self%rate, sense * self%drive, self%holds)
     end function mirrored
 
-    !> The moment between two others at which the force turns, by cubic interpolation.
+    !> The moment between two others at which the force turns, by cubic interpolation. A force that
+    !> changes all the way as at one of them turns at the other: the velocity of a block without
+    !> mass jumps there.
     pure subroutine turning_point(a, b, between, found)
         type(moment), intent(in) :: a, b
         type(moment), intent(out) :: between
         logical, intent(out) :: found
+        real(dp), parameter :: bend = 0.1_dp   !! of the mean rate from either, part of their
+                                               !! difference; of a parabola a half
         real(dp) :: dt, c0, c1, c2, root, s
 
         found = a%rate * b%rate < 0.0_dp
         if (.not. found) return
         dt = b%time - a%time
+        s = ((b%force - a%force) / dt - a%rate) / (b%rate - a%rate)
+        found = s > bend .and. s < 1.0_dp - bend
+        if (.not. found) return
         c0 = dt * a%rate   ! d(force)/ds = c0 + c1 s + c2 s^2 for s = 0 to 1
         c1 = 6.0_dp * (b%force - a%force) - dt * (4.0_dp * a%rate + 2.0_dp * b%rate)
         c2 = 3.0_dp * dt * (a%rate + b%rate) - 6.0_dp * (b%force - a%force)
@@ -294,13 +330,28 @@ contains
             s = -2.0_dp * c0 / (c1 + sign(root, c1))
         end if
         s = min(1.0_dp, max(0.0_dp, s))
-        between%time = a%time + s * dt
-        between%force = a%force + s * (c0 + s * (0.5_dp * c1 + s * c2 / 3.0_dp))
+        between = between_moments(a, b, a%time + s * dt)
+        between%rate = 0.0_dp
+    end subroutine turning_point
+
+    !> A moment between two others: the force by cubic interpolation.
+    pure function between_moments(a, b, time) result(between)
+        type(moment), intent(in) :: a, b
+        real(dp), intent(in) :: time   !! [T]
+        type(moment) :: between
+        real(dp) :: s, dt, change
+
+        dt = b%time - a%time
+        s = (time - a%time) / dt
+        change = b%force - a%force
+        between%time = time
+        between%force = a%force + s * (change + (1.0_dp - s) * ((1.0_dp - s) * (dt * a%rate &
+            - change) - s * (dt * b%rate - change)))
         between%slip = a%slip + s * (b%slip - a%slip)
         between%velocity = a%velocity + s * (b%velocity - a%velocity)
         between%drive = a%drive + s * (b%drive - a%drive)
         between%holds = a%holds + s * (b%holds - a%holds)
-    end subroutine turning_point
+    end function between_moments
 
     !> Reads or writes what has to be kept to go on.
     subroutine visit(self, file)
@@ -313,6 +364,7 @@ contains
         call file%visit(self%fastest, self%slipping, self%driving, self%yielding, self%held)
         call self%current%visit(file)
         call file%visit(self%is_event, self%any_before, self%last_onset, self%fast_until)
+        call file%visit(self%rate, self%middle)
     end subroutine visit
 
     subroutine visit_moment(self, file)

@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B73000C', int64)   !! "sticks", and 12
+    integer(int64), parameter :: version = int(z'737469636B73000D', int64)   !! "sticks", and 13
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name

@@ -43,6 +43,27 @@ class Events(EventsOfRuns):
         for onset in onsets[:2]:
             self.assertAlmostEqual(onset, onsets[2], delta=0.02)
 
+    def test_an_event_that_goes_on_into_steady_sliding_ends_at_its_moment_whatever_the_steps(self):
+        # friction falls from 4 to 2 at once, the force by D = 2 - C V towards 2 + C V as exp(-t K/C): slip exceeds 1.5 V until D/(C V/2) is gone,
+        # and the event is twice as long. With a mass, in steps of any length, too: durations were 0.34 to 0.39, onsets up to a quarter early
+        for velocity, sense in ((3, 1), (5, -1)):
+            drop = 2 - 0.1 * velocity
+            fast = 0.1 * math.log(drop / (0.05 * velocity))
+            for time in ('dt=4e-4', 'rtol=1e-3', 'rtol=1e-5', 'rtol=1e-8'):
+                event, = self.events(f"""&friction law='slip_weakening', alpha_n=1e4, alpha_t=1e4, mu_s=0.4, mu_k=0.2, d_c=1e-4 /
+                    &slider mass=0, stiffness=1, damping=0.1, normal_traction=10 /
+                    &drive velocity={sense * velocity} /
+                    &time t_end=3, {time} /""")
+                self.assertAlmostEqual(event['onset'], 4 / velocity, delta=1e-3)
+                self.assertAlmostEqual(event['duration'], 2 * fast, delta=3e-3 * 2 * fast)
+                self.assertAlmostEqual(event['stress_drop'], drop * (1 - math.exp(-20 * fast)), delta=1e-3 * drop)
+        for time in ('dt=1e-4', 'rtol=1e-4', 'rtol=1e-5', 'rtol=1e-7'):
+            event, = self.events(f"""&friction law='subloading', alpha_n=1000, alpha_t=1000, mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=1000 /
+                &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction=10 /
+                &drive velocity=5 /
+                &time t_end=2, {time} /""")
+            self.assertAlmostEqual(event['duration'], 0.3791, delta=1.2e-3)
+
     def test_a_block_pulled_the_other_way_has_the_same_events(self):
         for steps in ('dt=1e-3', 'rtol=1e-6'):
             tables = [self.events(BLOCK + f'&drive velocity={v} / &time t_end=30, {steps} /') for v in (1, -1)]
