@@ -403,6 +403,9 @@ contains
         law = friction_facts(run%props)
         if (law%damping > 0.0_dp) call file%reject(group, key, &
             'has no spring for a damper (eta_t) to stand beside')
+        if (run%across%free() .and. pressure_effect(run%props) > 0.0_dp) call file%reject(group, &
+            key, 'is not for a state that depends on the pressure (alpha) where that follows ' &
+            // 'from the motion (normal_mass)')
         if (law%traits%onset == onset_gradual .and. law%cohesion > 0.0_dp) call file%reject(group, &
             key, 'has no cohesion where the slip rate tells the traction')
     end subroutine read_contact

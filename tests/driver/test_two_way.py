@@ -235,6 +235,8 @@ class Keys(Program):
         self.refused(two_way(slider={'tilt_stiffness': '13.5'}), 'tilt_stiffness', 'must not exceed sqrt(stiffness normal_stiffness)')
         self.refused(two_way(chain={'n_blocks': '2', 'coupling': '1'}), 'normal_mass', 'is for one block')
         self.refused(two_way({'contact': "'rigid'"}, time={'rtol': '1e-5', 'dt': None, 'beta': '0.25'}), 'contact', 'without beta')
+        self.refused(two_way({'law': "'linker_dieterich'", 'mu': None, 'contact': "'rigid'", **dict(a='0.01', b='0.015', d_c='0.1', v0='0.1', f0='0.5',
+                              alpha='0.2')}, time={'rtol': '1e-5', 'dt': None}), 'contact', 'normal_mass')
 
     def test_the_input_with_a_picture(self):
         text = (INPUTS / 'mode_coupling.nml').read_text(encoding='utf-8')
