@@ -201,13 +201,15 @@ contains
         dy(elastic) = contact%elastic
         dy(memory) = contact%memory
         dy(ratio) = contact%ratio
-        if (self%follows_share() .and. self%phase == phase_stick) dy(ratio) = 0.0_dp
         dy(place:away) = 0.0_dp
         dy(slip) = contact%slip
         dy(drive_work) = force * v_drive
         dy(damped) = self%damping * contact%velocity**2
         dy(dissipated) = abs(contact%traction) * contact%slip
-        if (self%damper > 0.0_dp) dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
+        if (self%damper > 0.0_dp) then
+            if (self%follows_share() .and. self%phase == phase_stick) dy(ratio) = 0.0_dp
+            dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
+        end if
         if (self%across%mass > 0.0_dp) call move_across(self, t, y, dy)
     end subroutine rates
 
