@@ -2,8 +2,8 @@
 module initial_states
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use contact_forces, only : friction_forces
-    use friction_mod, only : facts => law_facts, friction_facts, prop_alpha_t, statev_mu, &
-        statev_r, statev_size, statev_u_et
+    use friction_mod, only : facts => law_facts, friction_facts, onset_gradual, prop_alpha_t, &
+        statev_mu, statev_r, statev_size, statev_u_et
     use slider_system, only : cohesions, set_accelerations, slider, slider_state
     implicit none
     private
@@ -54,7 +54,7 @@ contains
         type(slider), intent(in) :: system
         type(initial_values), intent(in) :: values
         type(slider_state), intent(inout) :: state   !! as `initial_state` left it
-        real(dp), dimension(size(state%x)) :: mu, alpha_t
+        real(dp), dimension(size(state%x)) :: mu, alpha_t, pressure
         real(dp), allocatable :: props(:)
         type(facts) :: law
         integer :: i
@@ -63,6 +63,8 @@ contains
         state%x = values%displacement
         state%v = values%velocity
         mu = values%mu
+        pressure = state%normal
+        if (allocated(system%load)) pressure = pressure * system%load
         do i = 1, size(mu)
             if (i == 1 .or. allocated(system%constants)) then   ! else they are those of the first
                 props = system%props_of(i)
@@ -70,11 +72,15 @@ contains
             end if
             alpha_t(i) = props(prop_alpha_t)
             if (values%has_r .and. .not. values%mu_given) mu(i) = law%virgin_mu
+            ! where strength is reached at once the coefficient is that, however little is carried
+            if (values%has_r) then
+                state%statev(i, statev_mu) = mu(i)
+            else if (mu(i) > 0.0_dp .and. law%traits%onset == onset_gradual) then
+                state%statev(i, statev_mu) = max(0.0_dp, mu(i) - law%cohesion / pressure(i))
+            end if
         end do
-        state%statev(:, statev_mu) = mu
         if (values%has_r) state%statev(:, statev_r) = values%r
-        state%friction = mu * state%normal
-        if (allocated(system%load)) state%friction = state%friction * system%load
+        state%friction = mu * pressure
         if (values%has_r) state%friction = values%r * (state%friction + cohesions(system, &
             size(mu)))
         state%friction = system%area * state%friction

@@ -2,7 +2,7 @@
 import math
 import unittest
 
-from test_program import Program, law_namelist, namelist
+from test_program import LAWS, Program, law_namelist, namelist
 
 
 class Columns(Program):
@@ -173,6 +173,16 @@ class InitialState(Columns):
             self.assertLess(max(abs(v - 1e-3) for v in run['velocity']), 1e-9)
             self.assertLess(max(abs(mu - 0.6) for mu in run['mu']), 1e-8)
             self.assertLess(max(abs(theta - 10) for theta in run['theta']), 1e-5)
+
+    def test_the_friction_coefficient_at_the_start_is_that_of_the_law_however_little_is_carried(self):
+        # where an elastic contact has a strength it is the strength's, under a law of the slip rate what is carried but for cohesion
+        for law in LAWS:
+            text = law_namelist(law, cohesion='1')
+            plain, shifted, loaded = (self.run_columns(text + start) for start in (
+                '', '&initial displacement = 2 /', '&initial mu = 0.25 /'))
+            self.assertEqual(plain['mu'], shifted['mu'], law)
+            self.assertAlmostEqual(loaded['friction_force'][0], 2.5, delta=1e-14)
+            self.assertAlmostEqual(loaded['mu'][0], 0.15 if 'f0' in LAWS[law] else plain['mu'][0], delta=1e-14, msg=law)
 
     def test_energy_that_was_there_at_the_start_is_booked(self):
         result = self.run_text(namelist({('initial', 'spring_force'): '2', ('time', 'dt'): '1e-5'}),
