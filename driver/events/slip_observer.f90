@@ -17,6 +17,8 @@ module slip_observer
 
     public :: slip_watch
 
+    real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
+
     type, extends(observer) :: slip_watch
         type(programme) :: drive
         real(dp) :: stiffness = 0.0_dp                 !! of the drive spring [F/L]
@@ -75,7 +77,7 @@ contains
         type(step_news), intent(inout) :: news
         integer :: i, k
 
-        i = self%drive%piece(old%time)
+        i = self%drive%piece(old%time + round_off * (new%time - old%time))
         call self%finder%follow(seen(self, old, news%sums, 1, i), seen(self, new, news%sums, 2, &
             i), news%last, news%slip_events)
         do k = 1, size(news%slip_events)
@@ -92,7 +94,6 @@ contains
     pure subroutine measure(self, old, new)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
-        real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
         real(dp) :: aside
         integer :: i
 

@@ -2,6 +2,7 @@
 module piece_table
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use loading_programme, only : programme
     use number_text, only : full_row
     use piece_measures, only : piece_effects, read_off
     use run_outcome, only : event_totals, outcome
@@ -10,7 +11,7 @@ module piece_table
     implicit none
     private
 
-    public :: piece_rows, write_pieces
+    public :: piece_rows, pieces_reached, write_pieces
 
     integer, parameter :: n_columns = 18
     character(len=*), parameter, public :: piece_columns = 'piece,start,end,drive_velocity,' &
@@ -32,8 +33,8 @@ contains
 
         none = ieee_value(none, ieee_quiet_nan)
         associate (drive => run%drive)
-            n = max(1, count(drive%start(:drive%listed) < result%time))
-            ends = [drive%start(2:n), result%time]
+            n = min(drive%listed, pieces_reached(drive, result%time))
+            allocate (ends, source=[drive%start(2:n), result%time])
             effects = read_off(result%friction(:n), result%pieces(:n)%events, &
                 drive%velocity(:n), ends - drive%start(:n))
             allocate (rows(n_columns, n), source=none)
@@ -50,6 +51,16 @@ contains
             end do
         end associate
     end function piece_rows
+
+    !> How many pieces a run to time `t` has come to; starts are sums of durations, with round-off.
+    pure function pieces_reached(drive, t) result(pieces)
+        type(programme), intent(in) :: drive
+        real(dp), intent(in) :: t   !! [T]
+        integer :: pieces
+        real(dp), parameter :: round_off = 1.0e-12_dp   !! part
+
+        pieces = drive%piece(t * (1.0_dp - round_off))
+    end function pieces_reached
 
     !> Number of events, mean recurrence time, mean stress drop, peak velocity.
     pure function event_means(totals, area) result(means)

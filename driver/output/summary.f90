@@ -2,6 +2,7 @@
 module summary
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
+    use piece_table, only : pieces_reached
     use platform, only : report
     use run_outcome, only : event_totals, outcome
     use run_warnings, only : find_warnings, run_warning
@@ -74,7 +75,8 @@ contains
         call line('mean period        ', all%period, all%recurrences, '[T]')
         call line('mean stress drop   ', all%force_drop / run%area, all%events, '[F/L^2]')
         call line('peak velocity      ', result%peak_velocity, 1, '[L/T]')
-        if (size(result%pieces) > 1) call print_pieces(run, result%pieces)
+        if (size(result%pieces) > 1) call print_pieces(run, &
+            result%pieces(:min(size(result%pieces), pieces_reached(run%drive, result%time))))
         call print_energy(result)
         write (report, '(2a)') 'table              ', table
     end subroutine print_summary
@@ -147,7 +149,7 @@ contains
         text = adjustl(text)
     end function mean
 
-    !> Period and stress drop against drive velocity, one line a piece of the programme.
+    !> Period and stress drop against drive velocity, one line a piece that the run has come to.
     subroutine print_pieces(run, pieces)
         type(settings), intent(in) :: run
         type(event_totals), intent(in) :: pieces(:)

@@ -3,6 +3,7 @@ module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use linear_stability, only : analyse, stability, undecided, verdicts
     use number_text, only : quoted_field, short_text
+    use piece_table, only : pieces_reached
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
     use steady_sliding, only : sliding_case, take_piece
@@ -94,7 +95,7 @@ contains
         type(sliding_case) :: this
         type(stability) :: steady
 
-        call take_piece(this, run, run%drive%piece(run%t_end))
+        call take_piece(this, run, pieces_reached(run%drive, run%t_end))
         call analyse(this, steady)
         text = 'NaN'
         if (steady%verdict /= undecided) text = short_text(steady%growth)

@@ -56,8 +56,8 @@ contains
             time = aim
             if (.not. complete) time = old%time + (aim - old%time) / self%parts
             call self%method%step(self%system, self%origin + self%drive%position(time), &
-                self%drive%normal_traction(time, self%drive%piece(time)), time - old%time, old, &
-                new, report)
+                self%drive%normal_traction(time, self%drive%piece(time + round_off * self%dt)), &
+                time - old%time, old, new, report)
             if (report%status >= 0) then
                 self%over_step = self%method%sums(self%system, old, new)
                 call account(self%system, self%over_step, old, new)

@@ -295,6 +295,15 @@ class Pieces(Program):
             self.assertEqual(float(there.pop('drive_velocity')), -float(back.pop('drive_velocity')))
             self.assertEqual(there, back)
 
+    def test_table_and_summary_list_the_pieces_that_a_run_has_come_to(self):
+        # the third would start at 0.7999999999999999
+        for steps in ('dt=1e-2', 'rtol=1e-4'):
+            result = self.run_text(BLOCK + f'&drive velocity=1, 2, 3, 4, duration=0.1, 0.7, 5, 5 / &time t_end=0.8, {steps} /', '--no-plot')
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertEqual([float(row['drive_velocity']) for row in self.rows('case_out/case_pieces.csv')], [1, 2])
+            lines = result.stdout.split('from time')[1].split('work of')[0].splitlines()[1:]
+            self.assertEqual([float(line.split()[1]) for line in lines], [1, 2])
+
     def test_a_piece_has_the_friction_that_it_starts_with_however_long_its_steps_are(self):
         # held by the drive spring without slip: friction 0.1 t, in one step a piece; the third is under another load at once
         self.run_text("""&friction law='coulomb', alpha_n=1, alpha_t=1, mu=0.6, contact='rigid' /

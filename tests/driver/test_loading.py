@@ -31,6 +31,14 @@ class Programme(Columns):
             ramp = min(t, 0.05)
             self.assertAlmostEqual(run['drive'][k], ramp + 20 * ramp**2 + 3 * (t - ramp), delta=1e-12)
 
+    def test_a_step_of_the_normal_traction_does_not_hang_on_round_off_of_times(self):
+        # sums of durations are above or below the multiples of dt (0.30000000000000004, 0.7999999999999999)
+        text = namelist({('drive', 'duration'): '10*0.1', ('drive', 'normal'): ', '.join(['10', '20'] * 5), ('time', 't_end'): '0.96',
+                         ('time', 'dt'): '0.02'})
+        run = self.run_columns(text)
+        for t, normal in zip(run['time'], run['normal_traction']):
+            self.assertEqual(normal, 10 if int(t / 0.1 + 1e-6) % 2 == 0 else 20, t)
+
     def test_file_is_found_beside_the_input_file(self):
         (self.folder / 'deep').mkdir()
         (self.folder / 'deep/load.csv').write_text('time,velocity\n0,1\n1,1\n')
