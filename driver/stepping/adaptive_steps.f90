@@ -285,10 +285,11 @@ contains
             else
                 call blend(self%ends, [-self%part, 1.0_dp + self%part], new)
             end if
-            new%statev(:, statev_status) = finest_end%statev(:, statev_status)
             do i = 1, size(new%x)
                 associate (mu => new%statev(i, statev_mu), r => new%statev(i, statev_r), &
                     law => self%laws(min(i, size(self%laws))))
+                    if (nint(self%ends(1)%statev(i, statev_status)) /= nint(finest_end%statev(i, &
+                        statev_status)) .or. is_beyond(law, mu)) call keep_block(finest_end, i, new)
                     if (law%traits%memory == 1) then
                         mu = min(law%largest_coefficient, max(law%kinetic_coefficient, mu))
                         r = min(1.0_dp, max(0.0_dp, r))
@@ -299,6 +300,7 @@ contains
                 end associate
             end do
         end associate
+        new%statev(:, statev_status) = self%ends(2)%statev(:, statev_status)
         ! what accumulates never falls, not even by round-off
         new%statev(:, statev_slip) = max(old%statev(:, statev_slip), new%statev(:, statev_slip))
         new%statev(:, statev_dissipation) = max(old%statev(:, statev_dissipation), &
@@ -309,6 +311,32 @@ contains
         end associate
         call set_accelerations(self%system, new)
     end subroutine extrapolate
+
+    !> Is it no friction coefficient of a law that remembers none, but for round-off?
+    pure function is_beyond(law, mu) result(yes)
+        type(facts), intent(in) :: law
+        real(dp), intent(in) :: mu   !! [-]
+        logical :: yes
+        real(dp), parameter :: round_off = 1.0e-9_dp   !! part
+
+        yes = law%traits%memory /= 1 .and. law%largest_coefficient < huge(mu) .and. (mu &
+            - law%largest_coefficient > round_off * law%largest_coefficient .or. &
+            law%kinetic_coefficient - mu > round_off * law%kinetic_coefficient)
+    end function is_beyond
+
+    !> Block `i` as a state has it: where friction is another one in the whole step than in the halves,
+    !> because it sticks in one and slips in the other, both are not of one smooth motion.
+    pure subroutine keep_block(state, i, mixed)
+        type(slider_state), intent(in) :: state
+        integer, intent(in) :: i
+        type(slider_state), intent(inout) :: mixed
+
+        mixed%x(i) = state%x(i)
+        mixed%v(i) = state%v(i)
+        mixed%v_n = state%v_n
+        mixed%friction(i) = state%friction(i)
+        mixed%statev(i, :) = state%statev(i, :)
+    end subroutine keep_block
 
     !> Does a block that moves across the interface leave the base or come back to it?
     pure function opens_or_closes(system, old, ends) result(yes)

@@ -11,8 +11,8 @@ module continuous_steps
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
         prop_alpha_n, statev_u_n
-    use phase_changes, only : change_phase, first_root, lifts, phase_at_rest, settle, &
-        switch_values, switches
+    use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
+        settle, switch_values, switches
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
@@ -117,7 +117,7 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         type(trial) :: tried, whole
-        real(dp) :: end, wanted, before, opening
+        real(dp) :: end, wanted, before, opening, slipped
         integer :: piece
         logical :: again
 
@@ -154,8 +154,10 @@ contains
         if (tried%switch > 0) end = old%time + tried%h
         call self%choose_method(tried)
         associate (block => self%block, eq => self%block%equations)
+            slipped = block%y(slip)
             block%y = tried%y
             block%first = tried%last
+            call follow_velocity(block, end, slipped)
             if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
                 * block%first(slip)   ! velocities of less than round-off of the drive's
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0

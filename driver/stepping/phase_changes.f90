@@ -13,7 +13,8 @@ module phase_changes
     implicit none
     private
 
-    public :: change_phase, first_root, phase_at_rest, settle, slide_on, switch_values
+    public :: change_phase, first_root, follow_velocity, phase_at_rest, settle, slide_on, &
+        switch_values
 
     integer, parameter, public :: switches = 4   !! ways in which a phase can end
     integer, parameter, public :: lifts = 4      !! the one in which the block leaves the base
@@ -276,18 +277,14 @@ contains
         type(moving_block), intent(inout) :: block
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp), intent(in) :: strength   !! [F/L^2]
-        real(dp) :: before, after, by_rate, v
-        logical :: failed
+        real(dp) :: before, after
 
         associate (eq => block%equations)
             before = abs(block%y(elastic))
             block%y(elastic) = eq%sense * strength / eq%alpha
             if (eq%phase == phase_capped) return
             if (eq%surface%traits%onset == onset_drops) then
-                call eq%find_velocity(block%y, pressure, v, failed)
-                call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), max(0.0_dp, &
-                    eq%sense * v), pressure, after, by_rate)
-                after = min(after, eq%surface%tau_max) / eq%alpha
+                after = dropped(eq, block%y, pressure)
                 block%y(elastic) = eq%sense * after
                 block%y(slip) = block%y(slip) + max(0.0_dp, before - after)
                 block%y(dissipated) = block%y(dissipated) + max(0.0_dp, 0.5_dp * eq%alpha &
@@ -297,6 +294,39 @@ contains
             end if
         end associate
     end subroutine jump
+
+    !> Elastic displacement, in the sense of the slip, under friction that falls as soon as it slides.
+    pure function dropped(eq, y, pressure) result(displacement)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: y(unknowns)
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp) :: displacement           !! [L]
+        real(dp) :: resistance, by_rate, v
+        logical :: failed
+
+        call eq%find_velocity(y(:controlled), pressure, v, failed)
+        call eq%surface%resistance_at(eq%law_state_of(y(:controlled), pressure), max(0.0_dp, &
+            eq%sense * v), pressure, resistance, by_rate)
+        displacement = min(resistance, eq%surface%tau_max) / eq%alpha
+    end function dropped
+
+    !> At the end of a step: where the traction follows the velocity, so does the contact spring.
+    !> Errors of its rate would add up, into the next time that the block sticks.
+    pure subroutine follow_velocity(block, t, least_slip)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: t            !! [T]
+        real(dp), intent(in) :: least_slip   !! that of the step's start [L]
+        real(dp) :: v_drive, pressure, pressure_rate, after
+
+        associate (eq => block%equations, y => block%y)
+            if (eq%phase /= phase_slide .or. eq%surface%traits%onset /= onset_drops &
+                .or. eq%rigid .or. eq%damper > 0.0_dp) return
+            call eq%inputs(t, y(:controlled), v_drive, pressure, pressure_rate)
+            after = dropped(eq, y, max(0.0_dp, pressure))
+            y(slip) = max(least_slip, y(slip) + eq%sense * y(elastic) - after)
+            y(elastic) = eq%sense * after
+        end associate
+    end subroutine follow_velocity
 
     !> Slip without time, as far as the friction routine lets the contact slip, if that is far. A
     !> block without mass and damper goes along: to friction its drive spring and its contact spring

@@ -147,6 +147,21 @@ class Motion(Chain):
         self.assertEqual(found[0], found[1])
         self.assertNotEqual(found[0], found[2])
 
+    def test_no_block_carries_more_than_its_strength_where_friction_drops(self):
+        # a step as a whole and in halves may find a block at rest and sliding: the mean of both is neither. Walls keep both alike
+        for slider, drive in (('', ''), ('', 'normal_amplitude=0.4, normal_frequency=1.3'), ('normal_mass=0.02, normal_damping=0.4,', '')):
+            chain = '' if slider else '&chain n_blocks=2, coupling=0.5 ends="fixed" /'
+            self.run_text(f"""&friction law='static_kinetic' alpha_n=100 alpha_t=30 mu_s=0.3 mu_k=0.2 d_c=1 /
+                &slider mass=0.002, stiffness=1, damping=0.02, {slider} normal_traction=1 /
+                &drive velocity=0.3, {drive} /
+                {chain}
+                &time t_end=4, rtol=1e-3, beta=0.25 /""", '--no-plot')
+            rows = self.rows('case_out/case.csv')
+            self.assertGreater(len(rows), 100)
+            for row in rows:
+                self.assertLessEqual(float(row['mu']), 0.3)
+                self.assertLessEqual(abs(float(row['friction_force'])), 0.302 * float(row['normal_traction']))
+
     def test_a_balance_is_found_where_newtons_method_does_not_settle(self):
         # friction that drops at once, in long steps; without coupling as of single blocks (Newton's tolerance, grown in events)
         text = """&friction law='static_kinetic' alpha_n=100 alpha_t=100 mu_s=1 mu_k=0.3 d_c=30 /
