@@ -7,7 +7,8 @@ module netcdf_table
     use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_null_char, c_ptr, &
         c_size_t
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use csv_table, only : column_request, largest, line_text, table
+    use csv_table, only : column_request, line_text, table
+    use number_reader, only : largest
     use netcdf_interface, only : nc_char, nc_close, nc_fill_double, nc_get_att_double, &
         nc_get_var_double, nc_inq_attlen, nc_inq_dimlen, nc_inq_vardimid, nc_inq_varid, &
         nc_inq_varndims, nc_inq_vartype, nc_nowrite, nc_open, nc_strerror, nc_string

@@ -10,6 +10,7 @@ module chain_reader
     public :: read_chain
 
     character(len=*), parameter :: group = 'chain'
+    integer, parameter :: most_blocks = 1000000
 
 contains
 
@@ -22,8 +23,10 @@ contains
 
         if (.not. file%has_group(group)) return
         call file%require(group, 'n_blocks')
-        call file%get_integer(group, 'n_blocks', blocks%n_blocks, between(1.0_dp, 1.0e6_dp), &
-            default=1)
+        call file%get_integer(group, 'n_blocks', blocks%n_blocks, between(1.0_dp, &
+            real(most_blocks, dp)), default=1)
+        ! refused: rules about blocks are asked of a chain of a size that they can hold
+        if (blocks%n_blocks < 1 .or. blocks%n_blocks > most_blocks) blocks%n_blocks = 2
         call file%get_real(group, 'coupling', blocks%coupling, at_least(0.0_dp))
         call file%get_choice(group, 'ends', ends, ['free    ', 'fixed   ', 'periodic'], &
             default='free')

@@ -12,7 +12,7 @@ module csv_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use fault_list, only : append_fault, fault
-    use number_reader, only : read_number
+    use number_reader, only : largest, read_number
     use number_text, only : whole_text
     use printable_text, only : lower, printable
     use whole_file, only : next_line, plain_text, read_whole_file
@@ -21,7 +21,6 @@ module csv_table
 
     public :: column_request, line_text, read_table, table, table_of_bytes, table_reader
 
-    real(dp), parameter, public :: largest = 1.0e100_dp   !! number that is taken
     integer, parameter :: most_faults = 20
     character(len=1), parameter :: tab = achar(9)
     character(len=*), parameter :: separators = tab // ';, '   ! in the order of preference

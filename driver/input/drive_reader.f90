@@ -2,9 +2,10 @@
 module drive_reader
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use column_keys, only : check_factors, read_column_keys, refuse_column_keys, refuse_table
-    use csv_table, only : column_request, largest, read_table, table
+    use csv_table, only : column_request, read_table, table
     use loading_programme, only : programme
     use namelist_input, only : any_number, at_least, above, namelist_file
+    use number_reader, only : largest
     implicit none
     private
 

@@ -10,7 +10,7 @@ module namelist_input
     use namelist_parser, only : group_seen, namelist_entry, parse_namelists, parsed_text, &
         value_token
     use namelist_rules, only : above, any_number, at_least, between, not_zero, rule
-    use number_reader, only : read_number
+    use number_reader, only : largest, read_number
     use number_text, only : whole_text
     use printable_text, only : lower, printable
     use whole_file, only : plain_text, read_whole_file
@@ -246,6 +246,8 @@ contains
                 // 'any number here, 1.8e308'
         else if (too_small) then
             why = 'is smaller than any number here but 0, 4.9e-324'
+        else if (abs(value) > largest) then
+            why = 'must not exceed 1e100 in size'
         else if (.not. allowed%holds(value)) then
             why = 'must be ' // allowed%text
             return

@@ -11,6 +11,9 @@ module number_reader
 
     public :: read_number
 
+    !> That inputs may have: squares are numbers, too, and the library takes no larger constants.
+    real(dp), parameter, public :: largest = 1.0e100_dp
+
     character(len=*), parameter :: digits = '0123456789'
 
 contains

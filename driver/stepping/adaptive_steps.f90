@@ -324,8 +324,8 @@ contains
             law%kinetic_coefficient - mu > round_off * law%kinetic_coefficient)
     end function is_beyond
 
-    !> Block `i` as a state has it: where friction is another one in the whole step than in the halves,
-    !> because it sticks in one and slips in the other, both are not of one smooth motion.
+    !> Block `i` as a state has it: where it sticks in the whole step and slips in the halves, or
+    !> the other way round, they are not of one smooth motion.
     pure subroutine keep_block(state, i, mixed)
         type(slider_state), intent(in) :: state
         integer, intent(in) :: i

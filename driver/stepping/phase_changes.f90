@@ -295,7 +295,7 @@ contains
         end associate
     end subroutine jump
 
-    !> Elastic displacement, in the sense of the slip, under friction that falls as soon as it slides.
+    !> Elastic displacement, in the sense of the slip, under friction that falls at once.
     pure function dropped(eq, y, pressure) result(displacement)
         type(slider_equations), intent(in) :: eq
         real(dp), intent(in) :: y(unknowns)

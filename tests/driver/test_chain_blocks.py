@@ -222,6 +222,10 @@ class Refused(OwnConstants):
                      '&chain mu_s_scatter = 1: must be from 0 to 0.99', '&chain m_scatter = -0.1: must be from 0 to 0.99',
                      '&chain scheme_scatter: unknown key', '&chain a_scatter: unknown key')
         self.refused(namelist({('chain', 'n_blocks'): '1', ('chain', 'mu_s_scatter'): '0.1'}), 'needs two or more blocks')
+        # a number of blocks out of range was taken to fill tables all the same
+        for n in ('0', '-3', '1000001', '2000000000'):
+            self.refused(namelist({**RUN, ('chain', 'n_blocks'): n, ('chain', 'alpha_t_scatter'): '0.1', ('chain', 'scatter'): '0.1'}),
+                         f'&chain n_blocks = {n}: must be from 1 to 1000000')
 
     def test_a_start_that_a_block_cannot_have(self):
         self.write_profile({'block': [1, 2, 3], 'mu_s': [0.4, 0.3, 0.4], 'tau_max': [10.0, 10.0, 1.0]})

@@ -432,6 +432,9 @@ class BadInput(Program):
                                ('drive', 'velocity'): '1, -Infinity', ('slider', 'area'): '1e999'}),
                      '&slider mass = NaN: must be finite', '&time t_end = Inf: must be finite',
                      '&drive velocity = -Infinity: must be finite', '&slider area = 1e999')
+        # a load whose strength were no number any more was valid, and the run failed at its start
+        self.refused(namelist({('slider', 'normal_traction'): '1e300', ('drive', 'velocity'): '1, -2e100'}),
+                     '&slider normal_traction = 1e300: must not exceed 1e100 in size', '&drive velocity = -2e100: must not exceed')
 
     def test_constants_that_contradict_each_other(self):
         self.refused(namelist({('friction', 'mu_s'): '0.1'}), '&friction mu_s = 0.1: must be >= mu_k')
