@@ -4,6 +4,7 @@ program stickslip
     use check, only : check_input
     use command_line, only : command, print_help, print_version, read_command_line
     use fault_study, only : run_fault_engine
+    use launcher, only : is_companion
     use platform, only : exit_program, hold_output
     use point_study, only : run_point
     use stability_study, only : stability_of_input
@@ -16,6 +17,8 @@ program stickslip
 
     call hold_output()
     call read_command_line(wanted)
+    ! The first process tells it and fails. One that failed before would have the launcher end it.
+    if (is_told_once(wanted) .and. is_companion()) call exit_program(exit_done)
     if (len(wanted%problem) > 0) then
         write (error_unit, '(2a)') 'stickslip: ', wanted%problem
         call print_help(to_error=.true.)
@@ -42,5 +45,23 @@ program stickslip
         call print_help(to_error=.false.)
     end select
     call exit_program(exit_status)
+
+contains
+
+    !> Have all processes that a launcher has started the same to tell? Those of other verbs than
+    !> `fault` have nothing to do with each other.
+    pure function is_told_once(wanted) result(yes)
+        type(command), intent(in) :: wanted
+        logical :: yes
+
+        select case (wanted%verb)
+        case ('run', 'point', 'sweep', 'stability', 'check')
+            yes = .false.
+        case ('fault')
+            yes = len(wanted%problem) > 0
+        case default
+            yes = .true.
+        end select
+    end function is_told_once
 
 end program stickslip

@@ -1,11 +1,12 @@
 !> stickslip-fault: the fault engine, which `stickslip fault` runs. A program of its own, so that
 !> nothing else depends on FFTW, MPI or NetCDF.
 program stickslip_fault
-    use, intrinsic :: iso_fortran_env, only : error_unit
+    use, intrinsic :: iso_fortran_env, only : error_unit, int64
     use fault_picture, only : draw_fault
     use fault_reader, only : read_fault_plan
     use fault_run, only : run_fault
     use fault_settings, only : fault_plan
+    use launcher, only : is_companion
     use namelist_input, only : namelist_file, read_namelist_file
     use netcdf_table, only : read_netcdf_table
     use platform, only : exit_program, hold_output, report, watch_for_interrupts
@@ -19,6 +20,7 @@ program stickslip_fault
     type(namelist_file) :: file
     character(len=:), allocatable :: input, directory, stem, problem
     logical :: resume, quiet, plot
+    integer(int64) :: first   !! of the processes that have a problem
 
     !$ call omp_set_num_threads(1)   ! processes share the work, not threads
     call hold_output()
@@ -29,6 +31,7 @@ program stickslip_fault
     quiet = index(argument(4), 'quiet') > 0
     plot = index(argument(4), 'no-plot') == 0
     if (lacks_mpi()) then
+        if (is_companion()) call exit_program(exit_done)   ! the first process tells it, and fails
         write (error_unit, '(a)') 'stickslip: this fault engine was built without MPI, and runs ' &
             // 'on one process (Debian: libopenmpi-dev libfftw3-mpi-dev, then build again)'
         call exit_program(exit_failed)
@@ -52,7 +55,8 @@ program stickslip_fault
         if (len(problem) > 0) problem = problem // new_line('a')
     end if
     if (together%any_of(len(problem) > 0)) then
-        if (together%rank == 0) write (error_unit, '(a)', advance='no') problem
+        first = together%lowest(merge(int(together%rank, int64), huge(first), len(problem) > 0))
+        if (together%rank == first) write (error_unit, '(a)', advance='no') problem
         call finish(exit_bad_input)
     end if
     call together%wait()

@@ -22,6 +22,7 @@ module csv_table
     public :: column_request, line_text, read_table, table, table_of_bytes, table_reader
 
     integer, parameter :: most_faults = 20
+    character(len=*), parameter :: digits = '0123456789'
     character(len=1), parameter :: tab = achar(9)
     character(len=*), parameter :: separators = tab // ';, '   ! in the order of preference
 
@@ -465,7 +466,8 @@ contains
             // ' (cells with a decimal comma need quotes)'
     end function other_size
 
-    !> A row of units or the like: none of its cells that count looks like a number.
+    !> A row of units or the like: its cells that count look like no numbers, but for 1, which is
+    !> the unit of what has none.
     pure function holds_words_only(text, form, cells) result(yes)
         character(len=*), intent(in) :: text
         type(file_form), intent(in) :: form
@@ -478,14 +480,30 @@ contains
         do i = 1, size(form%places)
             if (form%places(i) == 0 .or. form%places(i) > cells%n) cycle
             word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
-            if (len(word) == 0) cycle
+            if (len(word) == 0 .or. word == '1') cycle
             words = words + 1
-            yes = scan(word(1:1), '0123456789+-.,') == 0 .or. scan(word, '0123456789') == 0
+            yes = scan(word(1:1), digits // '+-.,') == 0 .or. scan(word, digits) == 0 &
+                .or. has_unit_behind(word)
             yes = yes .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
             if (.not. yes) return
         end do
         yes = words > 0
     end function holds_words_only
+
+    !> Units that begin with a number: 1/s, 10^-6, 0.1 mm. Dates (1/2/2026), times (12:30) and
+    !> numbers in groups (10 000) are none.
+    pure function has_unit_behind(word) result(yes)
+        character(len=*), intent(in) :: word
+        logical :: yes
+        integer :: mark, next
+
+        mark = scan(word, ' /*^')
+        yes = mark > 1
+        if (.not. yes) return
+        next = mark - 1 + verify(word(mark:) // ';', ' /*')
+        yes = next <= len(word)
+        if (yes) yes = word(next:next) == '^' .or. scan(word(next:next), digits // '+-.,:') == 0
+    end function has_unit_behind
 
     subroutine take_cell(word, line, title, form, value, read_in)
         character(len=*), intent(in) :: word, title
@@ -536,7 +554,6 @@ contains
     pure function may_part_thousands(word) result(yes)
         character(len=*), intent(in) :: word   !! has a comma
         logical :: yes
-        character(len=*), parameter :: digits = '0123456789'
         integer :: first, comma
 
         first = verify(word, '+-')

@@ -2,8 +2,9 @@
 module fault_study
     use, intrinsic :: iso_fortran_env, only : error_unit
     use command_line, only : command
+    use launcher, only : is_companion
     use platform, only : program_beside, replace_program
-    use verb_common, only : exit_failed
+    use verb_common, only : exit_done, exit_failed
     implicit none
     private
 
@@ -38,6 +39,8 @@ contains
         arguments = [character(len=len(arguments)) :: wanted%input, wanted%output, wanted%stem, &
             options]
         call replace_program(engine, arguments)
+        exit_status = exit_done
+        if (is_companion()) return   ! the first process tells it, and fails
         write (error_unit, '(2a)') 'stickslip: there is no fault engine ', engine
         write (error_unit, '(a)') &
             '  it is built where CMake finds FFTW; for several processes, MPI and FFTW for it.', &

@@ -83,11 +83,11 @@ def is_text(source: Any) -> bool:
     return isinstance(source, str) and '&' in source and ('\n' in source or re.match(r'\s*&\w+(\s|/\s*$)', source) is not None)
 
 
-def text_of(source: Source) -> str:
-    """The text of a namelist."""
+def named_text(source: Source) -> tuple[str, str]:
+    """The text of a namelist, and what its faults call it."""
     if isinstance(source, Mapping):
-        return written(groups_of(source))
-    return _input_of(source).text
+        return written(groups_of(source)), 'input'
+    return _input_of(source).text, 'input' if is_text(source) else str(source)
 
 
 def written(groups: Settings) -> str:

@@ -73,10 +73,8 @@ def run(input: str | pathlib.Path | Mapping[str, Any]) -> Run:
     `warnings` and are given as Python warnings, too. Several runs may go on at once, each in its thread.
     """
     pandas = needed('pandas', 'run')
-    name = 'input'
-    if not isinstance(input, Mapping) and not _namelist.is_text(input):
-        name = str(input)
-    output = _program.simulate(_namelist.text_of(input), name, lambda _part: None)
+    text, name = _namelist.named_text(input)
+    output = _program.simulate(text, name, lambda _part: None)
     if output.status == _program.BAD_INPUT:
         raise InputError(output.reports['faults'].rstrip())
     frames = {key: pandas.DataFrame(table.values, columns=table.names) for key, table in output.tables.items()}

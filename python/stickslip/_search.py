@@ -152,9 +152,13 @@ class Problem:
     def misfit(self, features: np.ndarray, floor: float = FLOOR) -> np.ndarray:
         """Features of simulations less those of the records, in standard deviations with a relative error of the model:
         with a large one the search finds its way along narrow valleys, which the times of the events make."""
+        return np.where(np.isnan(features), NO_EVENTS, LIMIT * np.tanh(self._apart(features, floor) / LIMIT))
+
+    def _apart(self, features: np.ndarray, floor: float) -> np.ndarray:
+        """The same without its bend."""
         wanted = np.concatenate([target.values for target in self.targets])
         errors = np.concatenate([target.errors(floor) for target in self.targets])
-        return np.where(np.isnan(features), NO_EVENTS, LIMIT * np.tanh((features + self.shift - wanted) / errors / LIMIT))
+        return (features + self.shift - wanted) / errors
 
     def coarse_misfit(self, candidate: np.ndarray) -> np.ndarray:
         """A few robust numbers of a short simulation against those of the records."""
@@ -197,14 +201,18 @@ class Problem:
         return known
 
     def jacobian(self, candidate: np.ndarray, step: float = STEP, floor: float = FLOOR) -> tuple[np.ndarray, np.ndarray]:
-        """Central differences of the misfit, and how far each constant's response is from a straight line (0 to 1)."""
-        steps = step * np.eye(candidate.size)
-        values = [self.misfit(features, floor)
-                  for features in self.evaluate('full', [candidate, *(candidate + steps), *(candidate - steps)])]
-        here, ahead, behind = values[0], np.array(values[1:candidate.size + 1]), np.array(values[candidate.size + 1:])
+        """Slopes of the misfit, and how far each constant's response is from a straight line (0 to 1). Differences are those of
+        the features: the times of many events move so far in a step that the bend of the misfit would make them too small."""
+        size, steps = candidate.size, step * np.eye(candidate.size)
+        features = np.array(self.evaluate('full', [candidate, *(candidate + steps), *(candidate - steps)]))
+        misfits, apart = self.misfit(features, floor), self._apart(features, floor)
+        flat = np.isnan(apart).any(axis=0)   # where a simulation shows too few events
+        values = np.where(flat, misfits, apart)
+        here, ahead, behind = values[0], values[1:size + 1], values[size + 1:]
         bend = np.linalg.norm(ahead + behind - 2.0 * here, axis=1)
         straight = np.linalg.norm(ahead - behind, axis=1)
-        return ((ahead - behind) / (2.0 * step)).T, bend / np.maximum(bend + straight, 1e-300)
+        bent = np.where(flat, 1.0, 1.0 - (misfits[0] / LIMIT)**2)
+        return (bent * (ahead - behind) / (2.0 * step)).T, bend / np.maximum(bend + straight, 1e-300)
 
     def coarse_jacobian(self, candidate: np.ndarray, step: float = 0.02) -> np.ndarray:
         """Differences of the coarse misfit to one side, towards the middle of the bounds."""

@@ -34,10 +34,7 @@ def stability(input: str | pathlib.Path | Mapping[str, Any]) -> Stability:
     numbers are NaN, and `reason` tells why.
     """
     pandas = needed('pandas', 'run')
-    name = 'input'
-    if not isinstance(input, Mapping) and not _namelist.is_text(input):
-        name = str(input)
-    output = _program.steady_sliding(_namelist.text_of(input), name)
+    output = _program.steady_sliding(*_namelist.named_text(input))
     if output.status == _program.BAD_INPUT:
         raise InputError(output.reports['faults'].rstrip())
     found, roots = output.tables['stability'], output.tables['eigenvalues'].values

@@ -168,6 +168,31 @@ class Processes(FaultTest):
         if not MPIRUN:
             self.skipTest('built without MPI')
 
+    def test_what_all_processes_would_tell_is_told_once(self):
+        self.write(SMALL)
+        self.write(SMALL.replace('nz = 64', 'nz = 0'), 'bad.nml')
+        no_engine = self.place / 'elsewhere'
+        no_engine.mkdir()
+        shutil.copy(PROGRAM, no_engine)
+        for arguments, status, words in ((['fault'], 2, 'fault needs an input file'), (['falt', 'case.nml'], 2, "command 'falt'"),
+                                         ([], 2, 'no command given'), (['fault', 'case.nml', '--part', '1/2'], 2, '--part is for'),
+                                         (['fault', 'bad.nml'], 2, 'nz = 0'), (['fault', 'none.nml'], 2, 'Cannot open file'),
+                                         (['fault', '--help'], 0, 'usage: stickslip run'), (['--version'], 0, 'stickslip ')):
+            told = self.launch([PROGRAM, *arguments], status)
+            self.assertEqual(told.count(words), 1, told)
+        told = self.launch([no_engine / pathlib.Path(PROGRAM).name, 'fault', 'case.nml'], 1)
+        self.assertEqual(told.count('there is no fault engine'), 1, told)
+        # what one process alone cannot do is told by that one; runs of their own tell each its own
+        told = self.launch([PROGRAM, 'fault', 'case.nml', ':', '-n', '1', PROGRAM, 'fault', 'none.nml'], 2)
+        self.assertEqual(told.count('Cannot open file'), 1, told)
+        self.assertEqual(self.launch([PROGRAM, 'check', 'case.nml'], 0).count('valid'), 3)
+
+    def launch(self, command, status):
+        """What three processes say."""
+        done = subprocess.run([MPIRUN, '-n', '3', *command], cwd=self.place, env=ENVIRONMENT, capture_output=True, text=True)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
     def test_files_do_not_depend_on_the_number_of_processes(self):
         # odd numbers of cells: what is left over from vectors must not be rounded otherwise
         for text, counts in ((SMALL.replace('nz = 64', 'nz = 63'), (2, 4)), (PLANE, (3,)), (HALF, (2, 4)),

@@ -107,6 +107,15 @@ class Fit(unittest.TestCase):
             self.assertEqual(other.predict(self.record), self.fit.predict(self.record))
             self.assertEqual(other.settings(), self.fit.settings())
 
+    def test_slopes_are_those_of_the_features(self):
+        """The times of events of a record with little noise move by hundreds of standard deviations in a step of the differences:
+        the bend of the misfit, which starts there, made slopes 3 to 11 % too small, and error bars up to 1.4 times."""
+        found = stickslip.fit(stickslip.Record(*synthetic(noise=0.001)), INPUT,
+                              **{**SETTINGS, 'starts': 1, 'bounds': {'mu_s': (0.35, 0.45), 'mu_k': (0.17, 0.24)}})
+        problem = copy.deepcopy(found)._problem
+        coarse, fine = (problem.jacobian(found._candidate, step)[0] for step in (0.01, 0.001))
+        self.assertLess((np.linalg.norm(coarse - fine, axis=0) / np.linalg.norm(fine, axis=0)).max(), 0.02)
+
     def test_several_records_are_fitted_together_and_drawn(self):
         slow = synthetic(seed=2, drive={'velocity': 0.6}, time={'t_end': 25.0, 'rtol': 1e-8})
         found = stickslip.fit([self.record, stickslip.Record(*slow, {'Drive': {'Velocity': 0.6}})], INPUT,
@@ -478,7 +487,7 @@ class Records(unittest.TestCase):
         plain = [f'{t:.4f},{force:.5f}' for t, force in zip(self.time, self.force)]
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, 'rig.csv')
-            for head in (['Time,Spring_Force'], ['time [s],spring_force (N)'], ['% made by hand', '%time,spring_force', '%'],
+            for head in (['Time,Spring_Force'], ['time [s],spring_force (N)'], ['time,spring_force', '1/s,N m^-2'], ['% made by hand', '%time,spring_force', '%'],
                          ['time,spring_force', 's,N', '-,-']):
                 path.write_text('\n'.join([*head, *plain]))
                 np.testing.assert_allclose(stickslip.Record.read(path).force, self.force, atol=1e-5)
