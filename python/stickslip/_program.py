@@ -99,13 +99,18 @@ def _interruptible(go: Callable[[], Output], raised: list[BaseException]) -> lis
         finally:
             over.set()
 
-    threading.Thread(target=go_on).start()
-    while not over.is_set():
+    thread, started = threading.Thread(target=go_on), False
+    while True:
         try:
+            if not started:
+                if raised:   # while it was being started: whether it is or not, it ends by itself
+                    return found
+                thread.start()
+                started = True
             over.wait()
+            return found
         except BaseException as error:
             raised.append(error)
-    return found
 
 
 def steady_sliding(text: str, name: str = 'input') -> Output:

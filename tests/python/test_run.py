@@ -7,8 +7,11 @@ import pickle
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import types
 import unittest
+import unittest.mock
 import warnings
 
 import numpy as np
@@ -230,6 +233,20 @@ for steps in ({'dt': 1e-3}, {'rtol': 1e-6}):
         result = subprocess.run([sys.executable, '-c', program], input=_namelist.written(_namelist.groups_of(INPUT)), text=True,
                                 capture_output=True, check=False, timeout=600)
         self.assertEqual(result.stdout.split(), 4 * ['interrupted'], result.stderr)
+
+    def test_an_interrupt_while_the_run_is_started_ends_it(self):
+        class Interrupted(threading.Thread):
+            def start(self):
+                super().start()
+                raise KeyboardInterrupt
+
+        before = threading.active_count()
+        with unittest.mock.patch('stickslip._program.threading.Thread', Interrupted), self.assertRaises(KeyboardInterrupt):
+            stickslip.run({**INPUT, 'time': {'t_end': 1e5, 'dt': 1e-3}})   # a minute, if it goes on
+        end = time.monotonic() + 20.0
+        while threading.active_count() > before and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertEqual(threading.active_count(), before)
 
     def test_a_picture_is_drawn(self):
         with tempfile.TemporaryDirectory() as folder:
