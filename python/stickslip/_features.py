@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from ._records import Analysis, Falls, average, find_falls, smooth
+from ._records import Analysis, Falls, average, find_falls, smooth, straight_trend
 
 MOST_EVENTS = 30        # of a record that are followed one by one
 SKIPPED = 5             # events of a simulation before it has settled
@@ -43,6 +43,17 @@ class Target:
         sharpest of them and make the misfit's valleys narrow: a large error counts the more for them."""
         times = np.array(self.names) == 'event times'
         return np.hypot(self.noise, floor * self.scale * np.where(times, (floor / FLOOR)**0.9, 1.0))
+
+    def with_noise(self, time: np.ndarray, force: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """A force like the record's with noise like the record's; where a drift was taken out of the record, without what would
+        have been taken for one here."""
+        noise = self.draw_noise(rng, force.size)
+        if self.analysis.straightened:
+            falls = find_falls(time, smooth(force, self.analysis.window), self.analysis.threshold).part(slice(None, self.events))
+            if not self.analysis.from_rest:
+                falls = falls.part(slice(SKIPPED, None))
+            noise = noise - straight_trend(time, noise, falls, self.analysis.from_rest)
+        return force + noise
 
     def draw_noise(self, rng: np.random.Generator, size: int) -> np.ndarray:
         """Noise like the record's."""

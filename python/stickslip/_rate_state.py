@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ._arrays import row_of
 from ._optional import needed
+from ._records import spread
 from ._run import series
 from ._search import checked_bounds
 from .laws import Law, classes
@@ -191,10 +192,10 @@ class _Steps:
         return model + basis @ trend * self.noise
 
     def misfit(self, constants: np.ndarray, evolution: str) -> np.ndarray:
-        """Model less record, in standard deviations of the noise; large where the model's run fails."""
+        """Model less record, in standard deviations of the noise; where the model's run fails, more than any run leaves."""
         model = self.model(constants, evolution)
         if model is None or not np.isfinite(model).all():
-            return np.full(self.time.size, 100.0)
+            return np.maximum(100.0, 100.0 * np.ptp(self.friction) / self.noise)
         return (self.with_trend(model) - self.friction) / self.noise
 
 
@@ -236,14 +237,17 @@ def _prepare(time: Any, friction: Any, changes: Any, displacement: Any, velocity
         velocity, friction = -velocity, sense * friction
     if not (np.isfinite(velocity).all() and velocity.min() >= 0.0 and velocity[0] > 0.0):
         raise ValueError(f'velocities {velocity.tolist()}: the first must not be 0, and all must go one way')
-    noise = np.empty_like(time)
+    noise, steps, least = np.empty_like(time), np.abs(np.diff(friction)), 1e-6 * np.ptp(friction)
+    steps = steps[steps > least]
     for begin, end in zip(edges[:-1], edges[1:]):
         part = (time >= begin) & (time <= end)
         if part.sum() < 10:
             raise ValueError(f'{part.sum()} samples from {begin:g} to {end:g} are too few')
         second = np.diff(friction[part], 2)
-        noise[part] = max(float(np.subtract(*np.percentile(second, [75, 25]))) / 1.349 / np.sqrt(6.0),
-                          1e-6 * np.ptp(friction))
+        own = spread(second) / np.sqrt(6.0)
+        if own < least and steps.size:   # friction is known in steps
+            own = float(np.median(steps)) / np.sqrt(12.0)
+        noise[part] = max(own, least)
     return _Steps(time, friction, changes, velocity, noise, sense)
 
 
@@ -272,9 +276,9 @@ def _assess(record: _Steps, at: np.ndarray, misfit_at: Misfit, slope: np.ndarray
     blocks = np.array_split(np.arange(misfit.size), max(10, round(np.sqrt(misfit.size))))
     pulls = np.array([slope[block].T @ misfit[block] for block in blocks])
     covariance = inverse @ _lasting(slope, misfit) @ inverse
-    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    deviation = np.sqrt(np.max([spread**2, np.diag(inverse), np.diag(inverse @ (pulls.T @ pulls) @ inverse)], axis=0))
-    covariance *= np.outer(deviation / spread, deviation / spread)
+    alone = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    deviation = np.sqrt(np.max([alone**2, np.diag(inverse), np.diag(inverse @ (pulls.T @ pulls) @ inverse)], axis=0))
+    covariance *= np.outer(deviation / alone, deviation / alone)
     ends = np.array([at - NORMAL * deviation, at + NORMAL * deviation])
     if deviation.max() > STRAIGHT:
         ends = np.array([_valley(misfit_at, at, side * NORMAL * deviation, np.sqrt(np.diag(inverse)) / deviation, limits, given)

@@ -214,6 +214,7 @@ class Analysis:
     scattered: bool        #: do period or drop vary from event to event by more than a tenth?
     warnings: tuple[str, ...]
     sense: float           #: -1 where the drive goes backwards: forces here are those of the mirrored rig
+    straightened: bool     #: was a steady drift taken out?
 
     @property
     def step(self) -> float:
@@ -286,8 +287,11 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     warnings += _check_shape(record, falls)
     from_rest, late = _begins_at_rest(record, time, smooth(force, window), falls)
     warnings += late
-    force, falls, drift = _without_drift(record, time, force, falls, from_rest, noise)
+    trend, drift = _drift(record, time, force, falls, from_rest, noise)
     if drift:
+        force = force - trend
+        falls = dataclasses.replace(falls, peak=falls.peak - np.interp(falls.onset, time, trend),
+                                    trough=falls.trough - np.interp(falls.end, time, trend))
         warnings.append(f'{record.name}: {drift}')
     fine = min(period / SAMPLES_A_PERIOD, np.median(falls.end - falls.onset) / SAMPLES_A_FALL)
     coarser = max(1, int(fine / (time[1] - time[0])))
@@ -299,12 +303,12 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     gaps = np.diff(falls.middle)
     drops = falls.peak - falls.trough
     # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
-    scattered = max(_spread(gaps) / np.median(gaps), _spread(drops[1:]) / np.median(drops)) > 0.1
+    scattered = max(spread(gaps) / np.median(gaps), spread(drops[1:]) / np.median(drops)) > 0.1
     return Analysis(record, time, force, coarser, noise, own_noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings),
-                    sense)
+                    sense, bool(drift))
 
 
-def _spread(values: np.ndarray) -> float:
+def spread(values: np.ndarray) -> float:
     """Standard deviation of normally distributed values, from their quartiles."""
     return float(np.subtract(*np.percentile(values, [75, 25])) / 1.349)
 
@@ -326,9 +330,9 @@ def _even(record: Record) -> tuple[np.ndarray, np.ndarray, float, float]:
     # counts. Where most do not differ, the force is known in steps, or rests.
     before = steps[1:] / (steps[:-1] + steps[1:])   # weight of the neighbour before
     apart = (force[1:-1] - before * force[:-2] - (1.0 - before) * force[2:]) / np.sqrt(1.0 + before**2 + (1.0 - before)**2)
-    own_noise = _spread(apart)
+    own_noise = spread(apart)
     if own_noise == 0.0 and np.count_nonzero(apart) > 3:
-        own_noise = _spread(apart[apart != 0.0])
+        own_noise = spread(apart[apart != 0.0])
     noise = own_noise
     if _uneven(record.time):
         even = np.arange(0.0, time[-1], step)
@@ -440,13 +444,12 @@ def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: 
 PEAK_NOISE = 0.5       # of the noise of a sample: what peaks vary by at least, each the largest of a few samples
 
 
-def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, from_rest: bool,
-                   noise: float) -> tuple[np.ndarray, Falls, str]:
-    """Takes a steady drift of the peaks out, and says so; a drift of more than the force itself is refused. The force of a
-    spring that is slack at the start is right there, that of others in the middle."""
+def _drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, from_rest: bool,
+           noise: float) -> tuple[np.ndarray, str]:
+    """A steady drift of the peaks, to be taken out, and words on it, or ''; one of more than the force itself is refused."""
     late = falls.part(slice(1, None))
     if len(late) < 4:
-        return force, falls, ''
+        return np.zeros_like(time), ''
     # Sparse samples cut peaks and troughs off: where there are fewer in a part of the record, that is no drift.
     levels = 0.5 * (late.peak + late.trough) if _uneven(record.time) else late.peak
     slope, _ = np.polyfit(late.onset, levels, 1)
@@ -454,16 +457,25 @@ def _without_drift(record: Record, time: np.ndarray, force: np.ndarray, falls: F
     # A few peaks may lie on a line by chance.
     scatter = max(np.std(residual) * np.sqrt(len(late) / (len(late) - 2.0)), PEAK_NOISE * noise)
     error = scatter / (np.std(late.onset) * np.sqrt(len(late)))
-    drift = slope * (late.onset[-1] - late.onset[0])
+    length = late.onset[-1] - late.onset[0]
     drop = float(np.median(late.peak - late.trough))
-    if abs(drift) < 0.03 * drop or abs(slope) < 5.0 * error or abs(drift) < 2.0 * np.std(residual):
-        return force, falls, ''
+    if abs(slope * length) < 0.03 * drop or abs(slope) < 5.0 * error or abs(slope * length) < 2.0 * np.std(residual):
+        return np.zeros_like(time), ''
     level = float(np.median(late.peak))
-    if abs(drift) > 0.5 * level:
-        record.refuse(f'the peaks drift by {drift:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
+    if abs(slope * length) > 0.5 * level:
+        record.refuse(f'the peaks drift by {slope * length:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
                       'that changes so much is not what the model describes')
-    trend = slope * (time - (0.0 if from_rest else 0.5 * (late.onset[0] + late.onset[-1])))
-    return force - trend, dataclasses.replace(
-        falls, peak=falls.peak - np.interp(falls.onset, time, trend),
-        trough=falls.trough - np.interp(falls.end, time, trend)), (
-        f'the peaks drift by {drift:.3g} over the record, {abs(drift) / drop:.0%} of a drop; a straight line was taken out')
+    trend = straight_trend(time, force, falls, from_rest)
+    drift = float(np.interp(late.onset[-1], time, trend) - np.interp(late.onset[0], time, trend))
+    return trend, (f'the peaks drift by {drift:.3g} over the record, {abs(drift) / drop:.0%} of a drop; a straight line was '
+                   'taken out, and errors allow for it')
+
+
+def straight_trend(time: np.ndarray, force: np.ndarray, falls: Falls, from_rest: bool) -> np.ndarray:
+    """The straight line on which the mean forces of the cycles lie, which have far less noise than peaks. The force of a spring
+    that is slack at the start is right there, that of others in the middle."""
+    edges = falls.middle[1:]
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
+    means = np.diff(np.interp(edges, time, impulse)) / np.diff(edges)
+    slope, _ = np.polyfit(0.5 * (edges[1:] + edges[:-1]), means, 1)
+    return slope * (time - (0.0 if from_rest else 0.5 * (falls.onset[1] + falls.onset[-1])))

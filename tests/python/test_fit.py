@@ -185,19 +185,19 @@ class Fit(unittest.TestCase):
         """Of 8 records of each kind: the root mean square of errors in standard deviations is about 1."""
         fine, clean = synthetic(noise=0.0, output={'every': 0.001})
         close = {**SETTINGS, 'starts': 1, 'bounds': {'mu_s': (0.35, 0.45), 'mu_k': (0.17, 0.24)}}
-        for kind in ('even', 'uneven', 'lasting'):
+        for kind in ('even', 'uneven', 'lasting', 'drift'):
             off = []
             for seed in range(8):
                 draw = np.random.default_rng(seed)
                 t = np.sort(draw.uniform(0.0, 17.0, 1700)) if kind == 'uneven' else np.arange(0.0, 17.0, 0.01)
                 white = draw.normal(size=t.size + 60)
                 noise = np.convolve(white, 0.9**np.arange(61.0) * np.sqrt(0.19), 'valid') if kind == 'lasting' else white[60:]
-                force = np.interp(t - t[0], fine, clean) + 0.01 * clean.max() * noise
+                force = np.interp(t - t[0], fine, clean) + 0.01 * clean.max() * noise + (0.035 * t if kind == 'drift' else 0.0)
                 found = stickslip.fit(stickslip.Record(t, force), INPUT, **close)
                 off += [np.log(found.values[name] / true) / np.log(np.divide(*found.intervals[name][::-1])) * 2 * 1.96
                         for name, true in TRUE.items()]
             self.assertLess(np.sqrt(np.mean(np.square(off))), 1.4, kind)
-            self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.7, kind)
+            self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.5 if kind == 'drift' else 0.7, kind)
 
     def test_noise_that_lasts_has_its_part_in_mean_cycles(self):
         """Pieces of it must not cancel out over the cycles, as the whole does."""
@@ -414,8 +414,8 @@ class Records(unittest.TestCase):
 
     def test_a_drift_from_a_slack_start_leaves_the_start_where_it_was(self):
         found = analyse(stickslip.Record(self.time, self.force + 0.04 * self.time))
-        self.assertRegex(found.warnings[0], 'drift by 0.3[3-9]')
-        np.testing.assert_allclose(found.falls.peak, analyse(stickslip.Record(self.time, self.force)).falls.peak, atol=0.04)
+        self.assertRegex(found.warnings[0], 'drift by 0.(39|40)')
+        np.testing.assert_allclose(found.falls.peak, analyse(stickslip.Record(self.time, self.force)).falls.peak, atol=0.02)
 
     def test_wrong_units_are_told_before_the_search(self):
         for time, force in ((1e3 * self.time, self.force), (self.time, 1e3 * self.force), (self.time, 1e-3 * self.force)):
@@ -670,6 +670,19 @@ class RateAndState(unittest.TestCase):
                                               velocity=1e-6 * self.VELOCITY / 60.0)
         for name, unit in (('a', 1.0), ('b', 1.0), ('d_c', 1e-6), ('stiffness', 1e6)):
             self.assertAlmostEqual(scaled.values[name] / (unit * plain.values[name]), 1.0, delta=1e-4)
+
+    def test_friction_known_in_steps_is_fitted(self):
+        """Most samples are the same as their neighbours, or but for round-off: there is noise all the same, and what a failed run
+        leaves is more than what any other does."""
+        clean = self.independent(self.TIME, self.CHANGES, self.VELOCITY)
+        step = 5e-4
+        for seed in range(3):
+            friction = step * np.round((clean + 2e-4 * np.random.default_rng(seed).normal(size=clean.size)) / step)
+            found = stickslip.fit_rate_and_state(self.TIME, friction, changes=self.CHANGES, velocity=self.VELOCITY, starts=8)
+            self.assertEqual(found.warnings, [])
+            for name, true in self.TRUE.items():
+                low, high = found.intervals[name]
+                self.assertLess(abs(np.log(found.values[name] / true)), 1.3 * 0.5 * np.log(high / low), f'{name}: {found}')
 
     def test_bad_arguments_are_told(self):
         t = np.arange(100.0)
