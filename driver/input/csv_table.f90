@@ -467,7 +467,7 @@ contains
     end function other_size
 
     !> A row of units or the like: its cells that count look like no numbers, but for 1, which is
-    !> the unit of what has none.
+    !> the unit of what has none. Time or place, the first column that is asked for, has one.
     pure function holds_words_only(text, form, cells) result(yes)
         character(len=*), intent(in) :: text
         type(file_form), intent(in) :: form
@@ -480,7 +480,7 @@ contains
         do i = 1, size(form%places)
             if (form%places(i) == 0 .or. form%places(i) > cells%n) cycle
             word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
-            if (len(word) == 0 .or. word == '1') cycle
+            if (len(word) == 0 .or. word == '1' .and. i > 1) cycle
             words = words + 1
             yes = scan(word(1:1), digits // '+-.,') == 0 .or. scan(word, digits) == 0 &
                 .or. has_unit_behind(word)
