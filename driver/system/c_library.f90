@@ -6,9 +6,9 @@ module c_library
     private
 
     public :: c_access, c_close, c_end, c_execv, c_exit, c_fclose, c_ferror, c_fflush, c_fopen, &
-        c_fork, c_fread, c_fwrite, c_isatty, c_kill, c_madvise, c_mkdir, c_pipe, c_poll, c_puts, &
-        c_read, c_readlink, c_realpath, c_remove, c_rename, c_signal, c_strlen, c_strtod, &
-        c_truncate, c_wait, c_waitpid, c_write
+        c_fork, c_fread, c_fwrite, c_getpid, c_getppid, c_isatty, c_kill, c_madvise, c_mkdir, &
+        c_pipe, c_poll, c_puts, c_read, c_readlink, c_realpath, c_remove, c_rename, c_signal, &
+        c_strlen, c_strtod, c_truncate, c_wait, c_waitpid, c_write
 
     interface
         integer(c_int) function c_execv(path, arguments) bind(C, name='execv')
@@ -118,6 +118,16 @@ module c_library
             import :: c_int
             implicit none
         end function c_fork
+
+        integer(c_int) function c_getpid() bind(C, name='getpid')
+            import :: c_int
+            implicit none
+        end function c_getpid
+
+        integer(c_int) function c_getppid() bind(C, name='getppid')
+            import :: c_int
+            implicit none
+        end function c_getppid
 
         integer(c_int) function c_wait(status) bind(C, name='wait')
             import :: c_int

@@ -4,8 +4,8 @@
 module child_process
     use, intrinsic :: iso_c_binding, only : c_int, c_long, c_null_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, output_unit, real64
-    use c_library, only : c_close, c_end, c_fork, c_kill, c_pipe, c_poll, c_read, c_wait, &
-        c_waitpid, c_write
+    use c_library, only : c_close, c_end, c_fork, c_getpid, c_getppid, c_kill, c_pipe, &
+        c_poll, c_read, c_wait, c_waitpid, c_write
     use platform, only : interrupted, replace_program, seconds
     implicit none
     private
@@ -16,8 +16,9 @@ module child_process
         private
         integer(c_int) :: id = 0          !! of the process; 0: none is running
         integer(c_int) :: pipe_end = -1   !! the parent reads from it, the child writes to it
+        integer(c_int) :: parent = 0      !! who started it
     contains
-        procedure :: start, running, tell_and_end
+        procedure :: start, running, orphaned, tell_and_end
     end type child
 
 contains
@@ -34,6 +35,7 @@ contains
         if (.not. started) return
         flush (output_unit)
         flush (error_unit)
+        self%parent = c_getpid()
         self%id = c_fork()
         inside = self%id == 0
         started = self%id >= 0
@@ -50,6 +52,14 @@ contains
 
         running = self%id > 0
     end function running
+
+    !> In the child: its parent has ended, nobody waits for what it is doing.
+    function orphaned(self)
+        class(child), intent(in) :: self
+        logical :: orphaned
+
+        orphaned = c_getppid() /= self%parent
+    end function orphaned
 
     !> Hands one line of text to the parent, and ends the child.
     subroutine tell_and_end(self, text)

@@ -10,10 +10,11 @@ module sweep
     use platform, only : cores, rename_file, report
     use progress_bar, only : progress
     use result_files, only : of_sweep, remove_results
-    use run_observer, only : observer_slot
+    use run_observer, only : observer, observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
+    use slider_system, only : slider_state
     use sweep_journal, only : journal, read_rows, text_line
     use sweep_picture, only : draw_sweep
     use sweep_reader, only : read_sweep
@@ -26,6 +27,14 @@ module sweep
     private
 
     public :: sweep_input
+
+    !> Ends a run whose sweep is no more: one that is killed takes no child along.
+    type, extends(observer) :: parent_watch
+        type(child) :: this
+        integer :: steps_between = 1   !! looks
+    contains
+        procedure :: see => look_for_parent
+    end type parent_watch
 
 contains
 
@@ -215,7 +224,7 @@ contains
             end do
             if (next > size(rows)) return
             call children(k)%start(inside, started)
-            if (inside) call children(k)%tell_and_end(run_one(plan%runs(next)))
+            if (inside) call children(k)%tell_and_end(run_one(plan%runs(next), children(k)))
             if (.not. started) then
                 if (.not. any(children%running())) problem = 'no process can be started'
                 return
@@ -241,17 +250,31 @@ contains
     end subroutine run_all
 
     !> What a run has come to, as text.
-    function run_one(run) result(text)
+    function run_one(run, this) result(text)
         type(settings), intent(in) :: run
+        type(child), intent(in) :: this   !! in which it runs
         character(len=:), allocatable :: text
+        integer, parameter :: blocks_between = 256   !! looks, times steps
         type(simulation_run) :: live
-        type(observer_slot) :: no_observers(0)
+        type(parent_watch), target :: watch
+        type(observer_slot) :: observers(1)
         type(outcome) :: result
 
+        watch = parent_watch(this, max(1, blocks_between / run%chain%n_blocks))
+        observers(1)%it => watch
         call start_run(run, live)
-        call simulate(live, no_observers, result)
+        call simulate(live, observers, result)
         text = result_text(run, result)
     end function run_one
+
+    subroutine look_for_parent(self, old, new, news)
+        class(parent_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: old, new
+        type(step_news), intent(inout) :: news
+
+        if (mod(news%steps, self%steps_between) /= 0) return
+        if (self%this%orphaned()) call news%stop_run('its sweep has ended')
+    end subroutine look_for_parent
 
     !> The table replaces an older one whole or not at all.
     subroutine write_table(base, plan, rows, problem)

@@ -364,6 +364,18 @@ class Continuing(Sweep):
         self.assertEqual(result.returncode, 2)
         self.assertIn('case_sweep_part_1.journal holds results of another input', result.stderr)
 
+    def test_runs_of_a_sweep_that_is_killed_end_too(self):
+        # they hold its standard output open: who waits for that would wait for them
+        for chain in ('', '&chain n_blocks = 1000, coupling = 10 /\n'):
+            process = self.begin(sweep('drive%velocity', '1, 2', {('time', 't_end'): '1e6'}) + chain)
+            children = pathlib.Path(f'/proc/{process.pid}/task/{process.pid}/children')
+            if not children.exists():
+                self.skipTest('/proc tells of no children')
+            self.wait_until(lambda: children.read_text(), process)
+            process.kill()
+            process.communicate(timeout=60)
+            shutil.rmtree(self.folder / 'case_out')   # the journal is that of another input
+
     def test_a_part_tells_the_failures_among_its_own(self):
         text = sweep('slider%mass', '1e-3, 0, 2e-3', {('time', 't_end'): '10', ('slider', 'damping'): '0'})
         first = self.run_sweep(text, '--part', '1/2')
