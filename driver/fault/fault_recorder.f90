@@ -27,7 +27,7 @@ module fault_recorder
         logical :: writes = .false.              !! this process does
         logical, private :: draws_contours = .false.
     contains
-        procedure :: prepare, create, go_on, begin, see, flush_all, finish, failed, sizes
+        procedure :: prepare, create, go_on, begin, see, show_last, flush_all, finish, failed, sizes
         procedure, private :: write_rows, write_contours, contours_until, write_event
     end type recorder
 
@@ -142,6 +142,18 @@ contains
         if (ended) call self%write_event(watch%event)
         if (self%draws_contours) call self%write_contours(here, together, state, watch, ended)
     end subroutine see
+
+    !> Where the run fails: its last row is its last state.
+    subroutine show_last(self, here, together, state, watch)
+        class(recorder), intent(inout) :: self
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(fault_state), intent(in) :: state
+        type(event_watch), intent(in) :: watch
+
+        if (mod(state%steps, int(here%plan%interval, int64)) /= 0) call self%write_rows(here, &
+            together, state, watch)
+    end subroutine show_last
 
     subroutine write_rows(self, here, together, state, watch)
         class(recorder), intent(inout) :: self

@@ -119,6 +119,7 @@ contains
                 call live%steps%step(live%here, together, state, sound)
                 if (.not. sound) then
                     problem = 'at time ' // text_of(state%time) // ': no step is short enough'
+                    call records%show_last(live%here, together, state, live%watch)
                     exit
                 end if
                 call live%watch%see(live%here, together, records%time_before, state, ended)

@@ -41,14 +41,15 @@ contains
         call file%get_real(group, 'normal_amplitude', drive%amplitude, at_least(0.0_dp), &
             default=0.0_dp)
         call file%get_real(group, 'normal_phase', drive%phase, any_number(), default=0.0_dp)
-        if (file%given(group, 'normal_amplitude')) then
+        if (drive%amplitude > 0.0_dp) then
             call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp))
         else
             call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp), &
                 default=1.0_dp)
-            call file%refuse(group, 'normal_frequency', 'needs a normal_amplitude')
-            call file%refuse(group, 'normal_phase', 'needs a normal_amplitude')
         end if
+        if (file%given(group, 'normal_amplitude')) return
+        call file%refuse(group, 'normal_frequency', 'needs a normal_amplitude')
+        call file%refuse(group, 'normal_phase', 'needs a normal_amplitude')
     end subroutine read_oscillation
 
     ! ---- lists -------------------------------------------------------------------------------

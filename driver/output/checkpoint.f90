@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B73000D', int64)   !! "sticks", and 13
+    integer(int64), parameter :: version = int(z'737469636B73000E', int64)   !! "sticks", and 14
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name

@@ -28,7 +28,7 @@ module memory_recorder
         real(dp) :: area = 1.0_dp   !! contact area of a block [L^2]
         integer :: columns = 0      !! of the time series
     contains
-        procedure :: prepare, begin, see
+        procedure :: prepare, begin, see, finish
     end type memory_watch
 
 contains
@@ -65,6 +65,15 @@ contains
             call self%events%add(event_row(news%slip_events(i), self%area))
         end do
     end subroutine see
+
+    !> However a run ends, its last row is its last state.
+    subroutine finish(self, last, news)
+        class(memory_watch), intent(inout) :: self
+        type(slider_state), intent(in) :: last
+        type(step_news), intent(inout) :: news
+
+        if (.not. self%clock%shown) call self%series%add(series_row(last, self%columns))
+    end subroutine finish
 
     subroutine start_table(self, columns)
         class(memory_table), intent(inout) :: self

@@ -135,13 +135,15 @@ contains
             'the tables are as large as &output table_limit: resume the run with a larger one')
     end subroutine tell_loss
 
-    !> Writes what was cut short, and closes the files.
+    !> Writes what was cut short, and closes the files. However a run ends, its last row is its last
+    !> state.
     subroutine finish(self, last, news)
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: last
         type(step_news), intent(inout) :: news
 
         call self%write_chain_events(news)
+        if (.not. self%clock%shown) call self%write_state(last)
         call self%series%finish()
         call self%events%finish()
         call self%fields%save()
@@ -158,7 +160,7 @@ contains
         series = self%series%bytes
         events = self%events%bytes
         fields = self%fields%parts%records
-        call file%visit(self%rows, self%clock%steps, self%fields_due)
+        call file%visit(self%rows, self%clock%steps, self%clock%shown, self%fields_due)
         call self%picture%visit(file)
         call file%visit(series, events, fields)
         if (.not. file%writing) call self%go_on(series, events, fields)

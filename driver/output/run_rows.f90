@@ -21,6 +21,7 @@ module run_rows
         integer :: interval = 1      !! steps between two rows
         real(dp) :: every = 0.0_dp   !! time between two rows; 0: rows by `interval` [T]
         integer :: steps = 0         !! since the last row by `interval`
+        logical :: shown = .true.    !! the state at the end of the last step has its row
     contains
         procedure :: prepare, tick
     end type row_clock
@@ -45,6 +46,7 @@ contains
         if (news%complete) self%steps = self%steps + 1
         due = self%steps == self%interval .or. news%last &
             .or. next_row(self%every, old%time) <= new%time
+        self%shown = due
         if (self%steps == self%interval) self%steps = 0
     end subroutine tick
 

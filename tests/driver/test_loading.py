@@ -260,6 +260,24 @@ class QuasiStatic(Columns):
         self.assertRegex(result.stderr, r'the run failed at time  ?[\d.E+]+, step \d+: the slider is unstable')
         self.assertGreater(len(self.rows('case_out/case.csv')), 10)
 
+    def test_the_last_row_of_a_run_that_fails_is_its_last_state(self):
+        # there the block is about to jump, whatever rows were asked for
+        unstable = {**self.steady, ('slider', 'stiffness'): '1', ('drive', 'velocity'): '1', ('time', 't_end'): '20'}
+        del unstable['output', 'interval']
+        adaptive = {**unstable, ('time', 'rtol'): '1e-4'}
+        for changes, rows in ((unstable, ('interval', '1000')), (adaptive, ('interval', '100000')), (adaptive, ('every', '3'))):
+            tables = []
+            for key, value in (('interval', '1'), rows):
+                text = namelist({**changes, ('output', key): value})
+                self.assertEqual(self.run_text(text, '--no-plot').returncode, 1)
+                tables.append((self.folder / 'case_out/case.csv').read_text().splitlines())
+            whole, few = tables
+            if rows[0] == 'interval':
+                self.assertEqual(few[1:], [whole[1], whole[-1]])
+            else:   # which has steps of its own
+                self.assertEqual([float(row.split(',')[0]) for row in few[1:-1]], [0, 3])
+                self.assertAlmostEqual(float(few[-1].split(',')[0]), float(whole[-1].split(',')[0]), delta=1e-3)
+
     def test_a_surface_that_weakens_with_slip_is_unstable_in_the_same_words(self):
         changes = {('slider', 'mass'): '0', ('slider', 'damping'): '0', ('slider', 'stiffness'): '100', ('drive', 'velocity'): '0.1',
                    ('time', 't_end'): '1'}
@@ -944,6 +962,13 @@ class BadProgramme(Columns):
                                ('drive', 'normal_change'): "'jump'"}),
                      '&drive normal_amplitude = -1: must be >= 0', '&drive normal_frequency = 0: must be > 0',
                      "&drive normal_change = 'jump': must be one of 'step', 'ramp'")
+
+    def test_an_oscillation_of_amplitude_0_is_none(self):
+        tables = set()
+        for keys in ('', 'normal_amplitude=0', 'normal_amplitude=0, normal_phase=1', 'normal_amplitude=0, normal_frequency=3'):
+            self.run_columns(namelist().replace('&drive', '&drive ' + keys))
+            tables.add((self.folder / 'case_out/case.csv').read_bytes())
+        self.assertEqual(len(tables), 1)
 
     def test_a_law_without_r_refuses_an_initial_r(self):
         self.refused(law_namelist('rate_and_state') + '&initial r=0.5 /', '&initial r = 0.5: belongs to the law subloading')

@@ -1,6 +1,7 @@
 """Runs that stop before their end, and go on: checkpoints, --resume, interrupts; and --verify."""
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -97,6 +98,7 @@ class StopAndGo(LongRun):
         self.assertTrue((self.folder / 'case_out/case.checkpoint').exists())
         lines = (self.folder / 'case_out/case.csv').read_text().splitlines()
         self.assertEqual({len(line.split(',')) for line in lines}, {11})
+        self.assertRegex(errors, re.escape(f"{float(lines[-1].split(',')[0]):.6E}"), 'the last row is the last state')
 
     def test_an_interrupted_run_draws_no_picture(self):
         (self.folder / 'case.nml').write_text(FIXED.replace('t_end = 40', 't_end = 4e4'))

@@ -587,6 +587,10 @@ class FailedRun(Program):
         self.assertEqual((allowed.returncode, allowed.stderr), (0, ''))
         self.assertIn('tables of about 264.', allowed.stdout)
         self.assertEqual(self.run_text(namelist({**long, ('output', 'interval'): '1000'}), verb='check').returncode, 0)
+        # the same input says nothing against verbs that write no such tables
+        swept = namelist({**long, ('sweep', 'key'): "'drive%velocity'", ('sweep', 'values'): '1'})
+        for verb, text in (('stability', namelist(long)), ('check', swept)):
+            self.assertNotIn('table_limit', self.run_text(text, verb=verb).stderr)
 
     def test_adaptive_steps_stop_at_the_limit_and_can_be_resumed(self):
         text = namelist({('time', 't_end'): '12', ('time', 'rtol'): '1e-5'}, [('time', 'dt')])
