@@ -3,6 +3,7 @@
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_facts, law_facts, onset_drops, prop_alpha_t
+    use law_facts, only : pressure_effect
     use run_outcome, only : outcome
     use run_settings, only : settings
     implicit none
@@ -29,6 +30,7 @@ contains
             call look_at_contact(run, result, warnings)
         end if
         call look_at_file(run, result, warnings)
+        call look_at_opening(run, result, warnings)
     end subroutine find_warnings
 
     !> What comes in must be somewhere: the rest is the error of the integration in time.
@@ -141,5 +143,24 @@ contains
             &normal traction went on'
         warnings = [warnings, run_warning('short_file', text)]
     end subroutine look_at_file
+
+    !> A state that grows as the normal traction vanishes would leave the range of numbers: the
+    !> contact opens before (`within_range`). Continuous time has another state.
+    subroutine look_at_opening(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: most = 17.0_dp   !! open below 8e-6 of the largest normal traction
+        character(len=240) :: text
+        real(dp) :: effect
+
+        if (result%in_rates .or. .not. run%load_vanishes()) return
+        effect = pressure_effect(run%props, run%chain%constants)
+        if (effect <= most) return
+        write (text, '(a, f0.1, a)') 'the state grows so fast as the normal traction vanishes &
+            &(alpha is ', effect, ' times b) that the contact counts as open before: what would &
+            &slip there is missing. One block with adaptive steps has none of that'
+        warnings = [warnings, run_warning('early_opening', text)]
+    end subroutine look_at_opening
 
 end module run_warnings

@@ -369,18 +369,14 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(in) :: run
         real(dp), parameter :: largest = 28.0_dp   !! open below 8e-4 of the largest normal traction
-        logical :: vanishes
 
         if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
         if (.not. run%adaptive .or. run%one_by_itself() .and. .not. run%newmark) return
-        associate (d => run%drive)
-            vanishes = minval(d%normal) - d%amplitude <= 0.0_dp .and. (d%amplitude > 0.0_dp &
-                .or. any(abs(d%normal_rate) > 0.0_dp))
-        end associate
-        if (vanishes .and. pressure_effect(run%props, run%chain%constants) > largest) call &
-            file%reject('friction', 'alpha', 'must not exceed 28 b with a normal traction that ' &
-            // 'vanishes in adaptive steps (&time rtol) of chains, or with beta, gamma or ' &
-            // 'rho_infinity: the state would leave the range of numbers')
+        if (.not. run%load_vanishes()) return
+        if (pressure_effect(run%props, run%chain%constants) > largest) call file%reject( &
+            'friction', 'alpha', 'must not exceed 28 b with a normal traction that vanishes in ' &
+            // 'adaptive steps (&time rtol) of chains, or with beta, gamma or rho_infinity: the ' &
+            // 'state would leave the range of numbers')
     end subroutine check_pressing
 
     !> The spring of the contact, which continuous time can do without.

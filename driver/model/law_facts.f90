@@ -7,7 +7,8 @@ module law_facts
     implicit none
     private
 
-    public :: cohesion_of_each, has_r, internal_variable, pressure_effect, typical_strength
+    public :: cohesion_of_each, has_r, internal_variable, pressure_effect, pressure_effects, &
+        typical_strength
 
 contains
 
@@ -49,15 +50,24 @@ contains
         real(dp), intent(in) :: props(:)                    !! constants of the friction routine
         real(dp), intent(in), optional :: constants(:, :)   !! of each block, one row a block
         real(dp) :: effect                                  !! [-]
+
+        effect = maxval(pressure_effects(props, constants))
+    end function pressure_effect
+
+    !> The same of each block; one number, if all are alike.
+    pure function pressure_effects(props, constants) result(effects)
+        real(dp), intent(in) :: props(:)                    !! constants of the friction routine
+        real(dp), intent(in), optional :: constants(:, :)   !! of each block, one row a block
+        real(dp), allocatable :: effects(:)                 !! [-]
         integer :: pressed, evolves
 
-        effect = 0.0_dp
+        effects = [0.0_dp]
         pressed = friction_place(friction_law_of(props), 'alpha')
         if (pressed < 1) return
         evolves = friction_place(friction_law_of(props), 'b')
-        effect = props(pressed) / props(evolves)
-        if (present(constants)) effect = maxval(constants(:, pressed) / constants(:, evolves))
-    end function pressure_effect
+        effects = [props(pressed) / props(evolves)]
+        if (present(constants)) effects = constants(:, pressed) / constants(:, evolves)
+    end function pressure_effects
 
     !> Tractions that contacts carry without pressure. The place of that constant is asked for once:
     !> asking for all facts of each point takes longer than a step.

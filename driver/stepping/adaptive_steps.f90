@@ -16,7 +16,8 @@ module adaptive_steps
     use law_facts, only : pressure_effect
     use run_settings, only : settings
     use slider_system, only : set_accelerations, slider, slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
+    use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short, &
+        within_range
     use time_integrator, only : newmark
     use turning_times, only : turn
     implicit none
@@ -93,17 +94,6 @@ contains
 
         call self%explain_status(status, why_too_short(self%dt_min), why)
     end subroutine why_stopped
-
-    !> Part of the largest normal traction down to which what the law remembers stays in the range
-    !> of numbers, if it depends on the pressure.
-    pure function within_range(effect) result(part)
-        real(dp), intent(in) :: effect   !! of the pressure [-]
-        real(dp) :: part
-        real(dp), parameter :: most = 200.0_dp   !! change of its logarithm
-
-        part = 0.0_dp
-        if (effect > 0.0_dp) part = exp(-most / effect)
-    end function within_range
 
     !> The normal traction that counts as none in a piece of the programme: one that does not vary
     !> is taken as it is.

@@ -5,8 +5,12 @@ module fixed_steps
     use archive_file, only : archive
     use chain_parts, only : choose_method
     use energies, only : account
+    use friction_mod, only : statev_r
+    use law_facts, only : pressure_effects
+    use loading_programme, only : programme
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
+    use step_ends, only : within_range
     use step_sums, only : block_sums
     use time_integrator, only : newmark
     implicit none
@@ -19,11 +23,20 @@ module fixed_steps
         integer :: passed = 0          !! whole steps behind us
         integer :: parts = 1           !! pieces that the step is being taken in
         type(block_sums), private :: over_step   !! the last one
+        real(dp), allocatable :: effects(:)   !! of the pressure on what the law remembers, of each
+                                              !! block; one, if all are alike [-]
+        real(dp) :: open_below = 0.0_dp       !! normal traction that counts as none, where it
+                                              !! varies under a law with such an effect [F/L^2]
     contains
         procedure :: prepare, step, sums, visit, why_stopped
+        procedure, private :: load, carry_over
     end type fixed
 
     integer, parameter :: most_parts = 2**20   !! of a step
+    real(dp), parameter :: round_off = 1.0e-9_dp   !! part of a step
+    !> Part of the largest normal traction that counts as none at most, or at least, where a law's
+    !> state depends on it.
+    real(dp), parameter :: least_part = 1.0e-6_dp, largest_effect = 28.0_dp
 
 contains
 
@@ -35,7 +48,59 @@ contains
 
         call self%take_run(run, system, start)
         call choose_method(run, self%method)
+        self%effects = pressure_effects(system%props, system%constants)
+        if (any(self%effects > 0.0_dp)) self%open_below = run%drive%largest_normal() &
+            * max(least_part, within_range(min(largest_effect, maxval(self%effects))))
     end subroutine prepare
+
+    !> The normal traction at a time [F/L^2].
+    pure function load(self, time)
+        class(fixed), intent(in) :: self
+        real(dp), intent(in) :: time   !! [T]
+        real(dp) :: load
+        integer :: piece
+
+        piece = self%drive%piece(time + round_off * self%dt)
+        load = self%drive%normal_traction(time, piece)
+        if (load <= self%open_below .and. varies(self%drive, piece)) load = min(0.0_dp, load)
+    end function load
+
+    pure function varies(drive, piece) result(yes)
+        type(programme), intent(in) :: drive
+        integer, intent(in) :: piece
+        logical :: yes
+
+        yes = drive%amplitude > 0.0_dp .or. abs(drive%normal_rate(piece)) > 0.0_dp
+    end function varies
+
+    !> A state that depends on the pressure has no bound where that vanishes; the law keeps it as it
+    !> is in an increment that opens or closes the contact, wherever within the step that happens.
+    !> What has a limit is `theta p^(alpha/b)`. So the contact opens, and closes, at one small
+    !> pressure, and the state goes to it from that at the start, and from it to that at the end.
+    subroutine carry_over(self, old, new)
+        class(fixed), intent(in) :: self
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        real(dp), parameter :: most = 200.0_dp   !! change of the logarithm, as the law has it
+        real(dp) :: change
+        integer :: i
+
+        if (.not. self%open_below > 0.0_dp) return
+        if (old%normal > 0.0_dp .eqv. new%normal > 0.0_dp) return
+        if (.not. (self%system%across%free() .or. varies(self%drive, self%drive%piece(new%time &
+            - round_off * self%dt)))) return
+        if (old%normal > 0.0_dp) then
+            change = log(old%normal / self%open_below)
+        else
+            change = -log(new%normal / self%open_below)
+        end if
+        do i = 1, size(new%x)
+            associate (theta => new%statev(i, statev_r), &
+                effect => self%effects(min(i, size(self%effects))))
+                theta = theta * exp(max(-most, min(most, effect * change)))
+            end associate
+        end do
+    end subroutine carry_over
 
     !> With a mass the step is the fixed one; without, or where a block moves across the interface,
     !> a step that fails is taken in parts, because the balance of forces may be followed in small
@@ -45,7 +110,6 @@ contains
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
-        real(dp), parameter :: round_off = 1.0e-9_dp
         real(dp) :: aim, time
         logical :: complete
 
@@ -56,13 +120,13 @@ contains
             time = aim
             if (.not. complete) time = old%time + (aim - old%time) / self%parts
             call self%method%step(self%system, self%origin + self%drive%position(time), &
-                self%drive%normal_traction(time, self%drive%piece(time + round_off * self%dt)), &
-                time - old%time, old, new, report)
+                self%load(time), time - old%time, old, new, report)
             if (report%status >= 0) then
                 self%over_step = self%method%sums(self%system, old, new)
                 call account(self%system, self%over_step, old, new)
             end if
             new%time = time
+            if (report%status >= 0) call self%carry_over(old, new)
             call self%count_iterations(report%iterations)
             if (report%status >= 0) exit
             if (self%system%mass > 0.0_dp .and. .not. self%system%across%free()) exit

@@ -6,7 +6,8 @@ module step_ends
     implicit none
     private
 
-    public :: end_of_step, find_opening, next_limit, vanishing_part, why_too_short
+    public :: end_of_step, find_opening, next_limit, vanishing_part, why_too_short, &
+        within_range
 
 contains
 
@@ -54,6 +55,17 @@ contains
 
         part = merge(1.0e-2_dp * sqrt(rtol), 0.0_dp, stiff)
     end function vanishing_part
+
+    !> Part of the largest normal traction down to which what the law remembers stays in the range
+    !> of numbers, if it depends on the pressure.
+    pure function within_range(effect) result(part)
+        real(dp), intent(in) :: effect   !! of the pressure [-]
+        real(dp) :: part
+        real(dp), parameter :: most = 200.0_dp   !! change of its logarithm
+
+        part = 0.0_dp
+        if (effect > 0.0_dp) part = exp(-most / effect)
+    end function within_range
 
     !> When the normal traction falls to a threshold within a step, or rises above: the last moment
     !> before and the first one after; huge if neither happens.

@@ -298,6 +298,22 @@ class QuasiStatic(Columns):
             self.assertEqual(self.run_text(namelist(changes), '--no-plot').returncode, status)
 
 
+class PressureInTheState(Columns):
+    """Linker and Dieterich's state has no bound as the pressure vanishes; theta p^(alpha/b) has a limit."""
+
+    def test_the_state_after_an_opening_does_not_hang_on_where_in_a_step_it_comes(self):
+        # a block at 0.9 slips 45 dt d_c in a step, by which ln theta is uncertain; it was off by 10 and 40, whatever dt
+        text = ("&friction law='linker_dieterich', alpha_n=50, alpha_t=50, a=0.01, b=0.015, d_c=0.02, v0=0.01, f0=0.6, alpha=0.1 /\n"
+                '&slider mass=0.01, stiffness=1, damping=0.05, normal_traction=1{} /\n&drive velocity=0.1, normal_amplitude=1.3, '
+                'normal_frequency=0.25, normal_phase={} /\n{}&output interval=1000000 /\n&time t_end=4.2, {} /\n')
+        for across, chain in (('', ''), (', normal_mass=0.02, normal_damping=0.5', ''), ('', '&chain n_blocks=2, coupling=0 /\n')):
+            for phase in (0, 0.01):
+                right = math.log(self.run_columns(text.format(across, phase, '', 'rtol=1e-7'))['theta'][-1])
+                for dt in (1.7e-3, 4.1e-4):
+                    theta = self.run_columns(text.format(across, phase, chain, f'dt={dt}'))['theta'][-1]
+                    self.assertLess(abs(math.log(theta) - right), 45 * dt, (across, chain, phase, dt))
+
+
 class Balance(Columns):
     """One block has a balance of forces in every fixed step, found where Newton's method alone goes astray."""
     cases = (

@@ -10,10 +10,10 @@ from test_program import Program
 
 
 class Phases(Program):
-    def table(self, text):
+    def table(self, text, warning=''):
         """The rows of a run, and the energies that its summary tells."""
         result = self.run_text(text, '--no-plot')
-        self.assertEqual((result.returncode, result.stderr), (0, ''))
+        self.assertEqual((result.returncode, warning in result.stderr and result.stderr.count('\n')), (0, int(bool(warning))))
         energies = {name: float(value) for name, value in
                     re.findall(r'(drive|spring|kinetic|dissipated|damped|unbalanced) +(\S+)', result.stdout)}
         rows = [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case.csv')]
@@ -110,7 +110,8 @@ class Phases(Program):
                     &slider mass=1e-3, stiffness=1, damping=0.01, normal_traction=10 /
                     &drive velocity=0.1, {load} /
                     &time t_end=10, rtol=1e-6 / """
-                one, two = (self.table(text + chain) for chain in ('', '&chain n_blocks=2, coupling=5 /'))
+                one = self.table(text)
+                two = self.table(text + '&chain n_blocks=2, coupling=5 /', 'counts as open before' * ('alpha=0.4' in law))
                 self.assertAlmostEqual(two[0][-1]['displacement'], one[0][-1]['displacement'], delta=3e-3 * one[0][-1]['displacement'])
                 for energy in ('drive', 'dissipated'):
                     self.assertAlmostEqual(two[1][energy], 2 * one[1][energy], delta=1.5e-3 * two[1]['drive'])

@@ -90,6 +90,16 @@ class Warnings(Program):
         slow = (INPUTS / 'slow_steady.nml').read_text().replace('dt = 1e-3', 'dt = 1e-2')
         self.assertFalse(any('long for slip' in line for line in self.warnings(slow)))
 
+    def test_a_state_that_leaves_the_range_of_numbers_as_the_load_vanishes(self):
+        text = ("&friction law='linker_dieterich', alpha_n=50, alpha_t=50, a=0.01, b=0.015, d_c=0.02, v0=0.01, f0=0.6, alpha={} /\n"
+                '&slider mass=0.01, stiffness=1, damping=0.05, normal_traction=1 /\n'
+                '&drive velocity=0.1, normal_amplitude={}, normal_frequency=0.25 /\n&time t_end=0.5, {} /\n')
+        told = self.warnings(text.format(0.405, 1.3, 'dt=1e-2'))
+        self.assertEqual(len(told), 1)
+        self.assertIn('(alpha is 27.0 times b) that the contact counts as open before', told[0])
+        for calm in ((0.1, 1.3, 'dt=1e-2'), (0.405, 0.9, 'dt=1e-2'), (0.405, 1.3, 'rtol=1e-4')):
+            self.assertEqual(self.warnings(text.format(*calm)), [])
+
     def test_a_measured_file_that_ends_before_the_run(self):
         (self.folder / 'drive.csv').write_text('time,velocity\n0,1\n2,1\n')
         text = namelist({('drive', 'file'): "'drive.csv'", ('time', 't_end'): '2'}, [('drive', 'velocity')])
