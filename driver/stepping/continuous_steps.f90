@@ -78,6 +78,7 @@ contains
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, eq%open_below)
+                eq%eased = eq%surface%traits%stiff
                 eq%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)

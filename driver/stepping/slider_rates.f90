@@ -53,6 +53,7 @@ module slider_rates
         real(dp), private :: constant_velocity = 0.0_dp   !! [L/T]
         real(dp), private :: constant_pressure = 0.0_dp   !! [F/L^2]
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
+        logical :: eased = .false.       !! the pressure comes to that smoothly
         integer :: phase = phase_stick
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
@@ -155,10 +156,27 @@ contains
             pressure = self%pressed_to(y)
             pressure_rate = -self%alpha_n * y(away)
         end if
-        if (pressure >= self%least_pressure) return
-        pressure = self%least_pressure
-        pressure_rate = 0.0_dp
+        if (self%eased) then
+            call ease(self%least_pressure, pressure, pressure_rate)
+        else if (pressure < self%least_pressure) then
+            pressure = self%least_pressure
+            pressure_rate = 0.0_dp
+        end if
     end subroutine changing_inputs
+
+    !> A pressure that is `least` where there is none, and itself where it is much larger. An edge
+    !> would be one of a state that follows the pressure's logarithm, too: no step is short enough.
+    pure subroutine ease(least, pressure, pressure_rate)
+        real(dp), intent(in) :: least
+        real(dp), intent(inout) :: pressure, pressure_rate   !! [F/L^2], [F/L^2/T]
+        real(dp) :: root, eased
+
+        root = hypot(pressure, 2.0_dp * least)
+        eased = 0.5_dp * (pressure + root)
+        if (pressure < 0.0_dp) eased = 2.0_dp * least**2 / (root - pressure)
+        pressure = eased
+        pressure_rate = pressure_rate * (eased / root)
+    end subroutine ease
 
     !> Rates of the unknowns.
     pure subroutine rates(self, t, y, dy, failed)

@@ -100,6 +100,21 @@ class Phases(Program):
         for other in dissipated[1:]:
             self.assertAlmostEqual(other, dissipated[0], delta=1e-3 * dissipated[0])
 
+    def test_a_state_that_follows_the_pressure_comes_through_a_touchdown_with_cohesion(self):
+        # the pressure had an edge where it counts as the least one, and ln theta, at a rate of 1e8, with it
+        places = []
+        for rtol in (1e-5, 3e-8):
+            rows, energies = self.table(f"""&friction law='linker_dieterich', alpha_n=2043, alpha_t=853, a=0.01755, b=0.01854, d_c=0.06, v0=0.00286,
+                    f0=0.796, alpha=0.356, cohesion=0.54 /
+                &slider mass=0.6083, stiffness=11.1, damping=0.0949, normal_traction=10, normal_mass=2.77, normal_stiffness=8.57,
+                    normal_damping=0.8686, tilt_stiffness=-6.13 /
+                &drive velocity=-0.0253, normal_amplitude=11.4355, normal_frequency=0.565 /
+                &output interval=100000 /
+                &time t_end=5, rtol={rtol} /""")
+            places.append(rows[-1]['displacement'])
+            self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])
+        self.assertAlmostEqual(places[0], places[1], delta=1e-4)
+
     def test_chains_whose_normal_traction_vanishes_do_as_their_blocks_do_in_continuous_time(self):
         # longer steps went over whole openings; the state after Linker and Dieterich had no value where a step ends at no pressure
         rate_state = 'a=0.01, b=0.015, d_c=0.01, v0=0.001, f0=0.6'
