@@ -150,13 +150,17 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     Raises RecordError where a record cannot be fitted (no sustained stick-slip, too few events, wrong sign, gaps, too
     much noise), ValueError where bounds or input are wrong; the text says what to do.
     """
-    records = [records] if isinstance(records, Record) else list(records)
-    if not records:
-        raise ValueError('fit: no records')
+    records, free = _listed(records, Record), _listed(free, str)
     if not all(isinstance(record, Record) for record in records):
         raise TypeError('fit: records: objects of stickslip.Record are needed')
-    free = [free] if isinstance(free, str) else list(free)
-    _check_arguments(free, bounds, seed=seed, starts=starts, jobs=jobs)
+    if not records:
+        raise ValueError('fit: no records')
+    if not all(isinstance(name, str) for name in free):
+        raise TypeError(f'fit: free = {free}: names are needed')
+    _check_names(free, bounds)
+    _check_counts(seed=seed, starts=starts, jobs=jobs, **{} if most_evaluations is None else {'most_evaluations': most_evaluations})
+    if most_seconds is not None and not (_is_number(most_seconds) and most_seconds > 0.0):
+        raise InputError(f'fit: most_seconds = {most_seconds!r}: must be > 0')
     base = _namelist.groups_of(input)
     constants = [_constant(name, base, bounds) for name in free]
     if not constants:
@@ -196,7 +200,7 @@ def _no_stick_slip(problem: Problem) -> ValueError:
         try:
             check_runs(settings)
         except ValueError as error:
-            return type(error)(f'fit: in the middle of the bounds: {error}')
+            return type(error)(f'fit: {target.analysis.record.name}, in the middle of the bounds: {error}')
     return ValueError('fit: no candidate within the bounds shows as many slip events as the records: widen the bounds, or '
                       'question the model')
 
@@ -245,15 +249,22 @@ def _bounded(name: str, group: str, key: str, bounds: Any, is_factor: bool = Fal
         raise InputError(f'fit: {fault}') from None
 
 
-def _check_arguments(free: Sequence[str], bounds: Any, **counts: int) -> None:
-    """Refuses names and counts that are none."""
-    if not all(isinstance(name, str) for name in free):
-        raise TypeError(f'fit: free = {free}: names are needed')
+def _listed(given: Any, kind: type) -> list:
+    """One or several of a kind as a list; what can be neither is its only element."""
+    return list(given) if isinstance(given, Iterable) and not isinstance(given, kind) else [given]
+
+
+def _check_names(free: Sequence[str], bounds: Any) -> None:
+    """Refuses a name that stands twice, and bounds of others."""
     full = [name.lower() if '.' in name or name == 'velocity_factor' else f'friction.{name.lower()}' for name in free]
     if len(set(full)) < len(full):
         raise InputError(f'fit: free = {free}: a name stands there twice')
     if isinstance(bounds, Mapping) and (others := [name for name in bounds if name not in free]):
         raise InputError(f'fit: bounds of {", ".join(map(str, others))}, which free does not have')
+
+
+def _check_counts(**counts: int) -> None:
+    """Refuses counts that are none."""
     for name, value in counts.items():
         least = 0 if name == 'seed' else 1
         if not isinstance(value, numbers.Integral) or isinstance(value, bool) or value < least:

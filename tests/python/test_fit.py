@@ -325,14 +325,23 @@ class Fit(unittest.TestCase):
             stickslip.fit(self.record, INPUT, free=['mu_s', 'mu_s'])
         for settings, words in (({'free': ['mu_s', 'friction.MU_S']}, 'twice'), ({'starts': 100}, 'power of 2'),
                                 ({'starts': 0}, 'starts = 0'), ({'seed': -1}, 'seed = -1'), ({'jobs': 1.5}, 'jobs = 1.5'),
+                                ({'most_evaluations': 0}, 'most_evaluations = 0: must be a whole number >= 1'),
+                                ({'most_evaluations': 'x'}, "most_evaluations = 'x'"), ({'most_seconds': -1}, 'most_seconds = -1: must'),
+                                ({'most_seconds': np.nan}, 'most_seconds = nan: must be > 0'),
                                 ({'bounds': {'mu_s': 0.4}}, 'a lower and an upper one'), ({'bounds': 'x'}, "bounds = 'x'"),
                                 ({'bounds': {'mu_s': (0.3, 0.5), 'mu_k': (0.1, 0.2)}}, 'bounds of mu_k, which free does not')):
             with self.assertRaisesRegex(stickslip.InputError, words):
                 stickslip.fit(self.record, INPUT, **{'free': ['mu_s'], **settings})
         with self.assertRaisesRegex(stickslip.InputError, 'group &friction is missing'):
             stickslip.fit(self.record, {'drive': {'velocity': 1.0}}, free='slider.mass', bounds={'slider.mass': (1, 2)}, starts=1)
-        with self.assertRaisesRegex(TypeError, 'stickslip.Record'):
-            stickslip.fit((self.time, self.force), INPUT, free=['mu_s'])
+        for records in ((self.time, self.force), None, 3):
+            with self.assertRaisesRegex(TypeError, 'stickslip.Record'):
+                stickslip.fit(records, INPUT, free=['mu_s'])
+        with self.assertRaisesRegex(TypeError, r'free = \[None\]: names are needed'):
+            stickslip.fit(self.record, INPUT, free=None)
+        rig = dataclasses.replace(self.record, settings={'drive': {'velocity': 'x'}}, name='rig')
+        with self.assertRaisesRegex(stickslip.InputError, "fit: rig, in the middle of the bounds: .*velocity = 'x': must be a number"):
+            stickslip.fit(rig, INPUT, **SETTINGS)
 
     def test_bounds_and_names_are_checked(self):
         for free, bounds, words in ((['time.rtol'], {'time.rtol': (1e-6, 1e-3)}, 'time.rtol: free are constants .*&time has none'),
