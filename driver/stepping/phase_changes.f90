@@ -214,6 +214,7 @@ contains
         type(moving_block), intent(inout) :: block
         real(dp), intent(in) :: t   !! [T]
         integer, intent(in) :: which
+        real(dp), parameter :: just_inside = 1.0_dp - 8.0_dp * epsilon(1.0_dp)
         real(dp) :: v_drive, pressure, pressure_rate, strength
 
         block%known = .false.
@@ -228,6 +229,9 @@ contains
                 return
             end if
             strength = min(eq%strength(block%y, pressure), eq%surface%tau_max)
+            if (eq%phase == phase_capped .and. eq%surface%traits%onset == onset_gradual .and. &
+                .not. eq%rigid) block%y(elastic) = eq%sense * just_inside * eq%surface%tau_max &
+                / eq%alpha   ! or round-off would call the cap back
             if (which == 3) then
                 block%y(memory) = eq%surface%traits%kink
             else if (eq%phase == phase_stick) then

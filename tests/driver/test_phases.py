@@ -115,6 +115,18 @@ class Phases(Program):
             self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])
         self.assertAlmostEqual(places[0], places[1], delta=1e-4)
 
+    def test_a_contact_leaves_its_cap_whatever_the_round_off_of_cap_and_stiffness(self):
+        # where (cap/alpha_t) alpha_t exceeds the cap by a bit, cap and law called each other back
+        for stiffness, cap in ((1636.3, 3.8), (1700.1, 3.61)):
+            _, energies = self.table(f"""&friction law='linker_dieterich', alpha_n=134.66, alpha_t={stiffness}, a=0.0072, b=0.01566, d_c=0.0872,
+                    v0=0.0677, f0=0.6389, alpha=0.3658, tau_max={cap} /
+                &slider mass=1.056, stiffness=5.488, damping=0.017, normal_traction=10, normal_mass=0.3419, normal_stiffness=22.48,
+                    normal_damping=7.342, tilt_stiffness=-9.426 /
+                &drive velocity=-0.0893, normal_amplitude=13.4, normal_frequency=1.114 /
+                &output interval=100000 /
+                &time t_end=3, rtol=1e-5 /""")
+            self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['dissipated'])
+
     def test_chains_whose_normal_traction_vanishes_do_as_their_blocks_do_in_continuous_time(self):
         # longer steps went over whole openings; the state after Linker and Dieterich had no value where a step ends at no pressure
         rate_state = 'a=0.01, b=0.015, d_c=0.01, v0=0.001, f0=0.6'
