@@ -51,6 +51,16 @@ print(stickslip.update([-1.0, 0.0], 1.0, stickslip.laws.Coulomb(alpha_n=1, alpha
         result = subprocess.run([sys.executable, '-c', program, *map(str, folders)], text=True, capture_output=True, check=False)
         self.assertEqual(result.stdout, '-1.0\n', result.stderr)
 
+    def test_a_missing_lapack_is_told_with_what_to_install(self):
+        with tempfile.TemporaryDirectory() as build:
+            result = subprocess.run([shutil.which('cmake'), '-S', ROOT, '-B', build, '-DCMAKE_DISABLE_FIND_PACKAGE_LAPACK=ON'],
+                                    text=True, capture_output=True, check=False)
+            self.assertNotEqual(result.returncode, 0)
+            words = ' '.join(result.stderr.split())
+            self.assertIn('needs LAPACK', words)
+            self.assertIn('apt install liblapack-dev', words)
+            self.assertIn('-DSTICKSLIP_BUILD_DRIVER=OFF', words)
+
     def test_a_missing_compiler_is_told_with_what_to_install(self):
         with tempfile.TemporaryDirectory() as folder:
             tools = pathlib.Path(folder, 'bin')
