@@ -130,7 +130,8 @@ contains
         even = c2 + z * (c4 + z * (c6 + z * (c8 + z * (c10 + z * (c12 + z * c14)))))
         odd = c1 + z * (c3 + z * (c5 + z * (c7 + z * (c9 + z * (c11 + z * c13)))))
         mean = 1.0_wp + y * (y * even - odd)
-        if (x > small) mean = (1.0_wp - left) / max(x, small)   ! lanes divide in any case
+        z = max(x, small)   ! lanes divide in any case; below, gfortran 14 knows it to be x
+        if (x > small) mean = (1.0_wp - left) / z
     end function mean_decay
 
     !> theta after a slip by the ageing law, exact for a constant slip rate.
@@ -196,7 +197,8 @@ contains
         y = min(x, small)   ! no powers of a large one, which overflow
         fall = 0.5_wp - y * (1.0_wp / 3.0_wp - y * (0.125_wp - y * (1.0_wp / 30.0_wp - y &
             / 144.0_wp)))
-        if (x > small) fall = (mean - left) / max(x, small)   ! lanes divide in any case
+        y = max(x, small)   ! as in `mean_decay`
+        if (x > small) fall = (mean - left) / y
     end function fall_of_mean
 
 end module friction_rate_state_core

@@ -39,9 +39,12 @@ contains
         real(wp), intent(in) :: stiffness       !! > 0 [F/L^3]
         real(wp), intent(in) :: fall            !! of the resistance with slip [F/L^3]
         real(wp) :: slip                        !! [L]
+        real(wp) :: steeper
 
         slip = above_kinetic / stiffness
-        if (stiffness > fall) slip = min(slip, above_start / (stiffness - fall))
+        ! lanes divide in any case; two numbers that differ do so by more than this
+        steeper = max(stiffness - fall, 0.25_wp * epsilon(fall) * stiffness)
+        if (stiffness > fall) slip = min(slip, above_start / steeper)
     end function slip_to_balance
 
     !> What healing leaves of D in an increment without slip. More than d_c, which a user may have
