@@ -61,6 +61,26 @@ print(stickslip.update([-1.0, 0.0], 1.0, stickslip.laws.Coulomb(alpha_n=1, alpha
             self.assertIn('apt install liblapack-dev', words)
             self.assertIn('-DSTICKSLIP_BUILD_DRIVER=OFF', words)
 
+    @unittest.skipUnless(sys.platform == 'linux', 'asks libraries as Linux has them')
+    def test_a_library_for_another_mpi_is_seen(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def library(name, soname, *needs):
+                path = f'{folder}/lib{name}.so'
+                subprocess.run(['cc', '-shared', '-o', path, f'-Wl,-soname,{soname}', '-Wl,--no-as-needed', '-x', 'c', '/dev/null',
+                                '-x', 'none', *needs], check=True)
+                return path
+
+            open_mpi = library('mpi', 'libmpi.so.40')
+            mpich = library('mpich', 'libmpich.so.12')
+            bindings = [library('mpi_mpifh', 'libmpi_mpifh.so.40', open_mpi), library('mpichfort', 'libmpichfort.so.12')]
+            fftw = library('fftw3_mpi', 'libfftw3_mpi.so.3', open_mpi)
+            for found, other in (([bindings[0], open_mpi], ''), ([bindings[1], mpich], 'libmpi.so.40'), ([], '')):
+                script = pathlib.Path(folder, 'ask.cmake')
+                script.write_text(f'include({ROOT}/driver/fault/OtherMpi.cmake)\n'
+                                  f'stickslip_other_mpi(other {fftw} {" ".join(found)})\nmessage("other: ${{other}}")\n')
+                result = subprocess.run([shutil.which('cmake'), '-P', script], text=True, capture_output=True, check=False)
+                self.assertEqual(result.stderr, f'other: {other}\n')
+
     def test_a_missing_compiler_is_told_with_what_to_install(self):
         with tempfile.TemporaryDirectory() as folder:
             tools = pathlib.Path(folder, 'bin')
