@@ -26,23 +26,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/stickslip-config-ve
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/stickslip-config.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/stickslip-config-version.cmake DESTINATION ${package})
 
-get_target_property(linker stickslip_static LINKER_LANGUAGE)
-if(linker STREQUAL "Fortran")   # and so are the compiler's own libraries, but for C's
-    list(APPEND libraries_behind ${CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES})
-    list(REMOVE_ITEM libraries_behind gcc gcc_s c m -lm)
-    list(REMOVE_DUPLICATES libraries_behind)
-    list(APPEND libraries_behind -lm)   # what the others call
-    foreach(folder IN LISTS CMAKE_Fortran_IMPLICIT_LINK_DIRECTORIES)   # a user's C compiler may not look there
-        foreach(library IN LISTS CMAKE_Fortran_IMPLICIT_LINK_LIBRARIES)
-            file(GLOB found ${folder}/lib${library}.*)
-            if(found AND NOT library MATCHES "^(gcc|gcc_s|c|m)$")
-                list(PREPEND libraries_behind -L${folder})
-            endif()
-        endforeach()
-    endforeach()
-    list(REMOVE_DUPLICATES libraries_behind)
-endif()
-list(TRANSFORM libraries_behind PREPEND -l REGEX "^[^-/]")
+list(APPEND libraries_behind ${fortran_libraries})
 list(JOIN libraries_behind " " libraries_behind)
 # A fully static program of gfortran that uses OpenMP ends with a call of this function, which its own
 # run-time library refers to weakly, and so leaves out.
