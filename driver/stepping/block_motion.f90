@@ -26,8 +26,8 @@ module block_motion
 
 contains
 
-    !> Equations of a block with constants of its own, but for its drive and the phase of its
-    !> contact, and the sizes of its unknowns.
+    !> Equations of a block with constants of its own, but for its drive, its motion across the
+    !> interface and the phase of its contact, and the sizes of its unknowns.
     subroutine set_up(run, props, largest, equations, natural)
         type(settings), intent(in) :: run
         real(dp), intent(in) :: props(:)
@@ -49,7 +49,6 @@ contains
             eq%area = run%area
             eq%alpha = props(prop_alpha_t)
             eq%alpha_n = props(prop_alpha_n)
-            eq%across = run%across
             law = friction_facts(props)
             eq%damper = law%damping
             eq%rigid = run%rigid_contact

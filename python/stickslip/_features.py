@@ -7,6 +7,7 @@ cycle around the drop and between drops, and the first loading; for one whose ev
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -44,16 +45,15 @@ class Target:
         times = np.array(self.names) == 'event times'
         return np.hypot(self.noise, floor * self.scale * np.where(times, (floor / FLOOR)**0.9, 1.0))
 
-    def with_noise(self, time: np.ndarray, force: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-        """A force like the record's with noise like the record's; where a drift was taken out of the record, without what would
-        have been taken for one here."""
-        noise = self.draw_noise(rng, force.size)
-        if self.analysis.straightened:
-            falls = find_falls(time, smooth(force, self.analysis.window), self.analysis.threshold).part(slice(None, self.events))
-            if not self.analysis.from_rest:
-                falls = falls.part(slice(SKIPPED, None))
-            noise = noise - straight_trend(time, noise, falls, self.analysis.from_rest)
-        return force + noise
+    def with_noise(self, time: np.ndarray, force: np.ndarray, rng: np.random.Generator, number: int) -> Iterator[np.ndarray]:
+        """A force like the record's, again and again with other noise like the record's; where a drift was taken out of the
+        record, without what would have been taken for one here."""
+        falls = self._falls(time, force) if self.analysis.straightened else None
+        for _ in range(number):
+            noise = self.draw_noise(rng, force.size)
+            if falls is not None:
+                noise = noise - straight_trend(time, noise, falls, self.analysis.from_rest)
+            yield force + noise
 
     def draw_noise(self, rng: np.random.Generator, size: int) -> np.ndarray:
         """Noise like the record's."""
@@ -73,15 +73,19 @@ class Target:
 
     def of_samples(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
         """The same of samples like the record's."""
+        falls = self._falls(time, force)
+        if falls is None:
+            return None
+        if self.analysis.scattered:
+            return medians(time, force, falls)[0]
+        return self._repeating(time, force, falls)
+
+    def _falls(self, time: np.ndarray, force: np.ndarray) -> Falls | None:
+        """The events of samples that are compared; None where there are too few."""
         falls = find_falls(time, smooth(force, self.analysis.window), self.analysis.threshold)
         if len(falls) < self.events:
             return None
-        falls = falls.part(slice(None, self.events))
-        if self.analysis.scattered:
-            return medians(time, force, falls.part(slice(SKIPPED, None)))[0]
-        if not self.analysis.from_rest:
-            falls = falls.part(slice(SKIPPED, None))
-        return self._repeating(time, force, falls)
+        return falls.part(slice(SKIPPED if self.analysis.scattered or not self.analysis.from_rest else 0, self.events))
 
     def _repeating(self, time: np.ndarray, force: np.ndarray, falls: Falls) -> np.ndarray:
         middle = falls.middle

@@ -452,18 +452,18 @@ def _drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, fr
         return np.zeros_like(time), ''
     # Sparse samples cut peaks and troughs off: where there are fewer in a part of the record, that is no drift.
     levels = 0.5 * (late.peak + late.trough) if _uneven(record.time) else late.peak
-    slope, _ = np.polyfit(late.onset, levels, 1)
-    residual = levels - np.polyval(np.polyfit(late.onset, levels, 1), late.onset)
+    line = np.polyfit(late.onset, levels, 1)
+    residual = levels - np.polyval(line, late.onset)
     # A few peaks may lie on a line by chance.
     scatter = max(np.std(residual) * np.sqrt(len(late) / (len(late) - 2.0)), PEAK_NOISE * noise)
     error = scatter / (np.std(late.onset) * np.sqrt(len(late)))
-    length = late.onset[-1] - late.onset[0]
+    rise = line[0] * (late.onset[-1] - late.onset[0])
     drop = float(np.median(late.peak - late.trough))
-    if abs(slope * length) < 0.03 * drop or abs(slope) < 5.0 * error or abs(slope * length) < 2.0 * np.std(residual):
+    if abs(rise) < 0.03 * drop or abs(line[0]) < 5.0 * error or abs(rise) < 2.0 * np.std(residual):
         return np.zeros_like(time), ''
     level = float(np.median(late.peak))
-    if abs(slope * length) > 0.5 * level:
-        record.refuse(f'the peaks drift by {slope * length:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
+    if abs(rise) > 0.5 * level:
+        record.refuse(f'the peaks drift by {rise:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
                       'that changes so much is not what the model describes')
     trend = straight_trend(time, force, falls, from_rest)
     drift = float(np.interp(late.onset[-1], time, trend) - np.interp(late.onset[0], time, trend))

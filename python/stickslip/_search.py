@@ -335,7 +335,7 @@ def _with_noise(target: Target, time: np.ndarray, force: np.ndarray, rng: np.ran
     clean = target.of_samples(time, force)
     if clean is None:
         return None
-    found = [target.of_samples(time, target.with_noise(time, force, rng)) for _ in range(number)]
+    found = [target.of_samples(time, noisy) for noisy in target.with_noise(time, force, rng, number)]
     return np.array([clean if features is None else features for features in found]) - clean
 
 
