@@ -26,7 +26,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     real(wp), intent(in) :: sse, spd, scd, rpl, ddsddt(*), drplde(*), drpldt, stran(*), time(*), &
         temp, dtemp, predef(*), dpred(*), coords(*), drot(*), pnewdt, celent, dfgrd0(*), dfgrd1(*)
     integer, intent(in) :: noel, npt, layer, kspt, jstep, kinc
-    character(len=1), intent(in) :: cmname
+    character(len=*), intent(in) :: cmname            ! this host passes no length
     integer, parameter :: places(3) = [3, 6, 5]       ! normal, along x, along y
     real(wp) :: du(3), traction(3), tangent(3, 3)
     integer :: status, i, j
