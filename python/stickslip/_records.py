@@ -271,9 +271,10 @@ SAMPLES_A_PERIOD = 200
 SAMPLES_A_FALL = 10
 
 
-def analyse(record: Record, sense: float = 1.0) -> Analysis:
+def analyse(record: Record, sense: float = 1.0, settled: bool = False) -> Analysis:
     """Finds the events of a record, or refuses it in words. sense: -1 where the drive goes backwards; the force may then be
-    given with the sign that the program has for it, or as for a drive that goes forwards."""
+    given with the sign that the program has for it, or as for a drive that goes forwards. settled: are the first events known to be
+    like the others?"""
     if sense < 0.0 and np.median(record.force) < 0.0:
         record = dataclasses.replace(record, force=-record.force)
     time, force, noise, own_noise = _even(record)
@@ -285,8 +286,17 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
     period = np.median(np.diff(falls.middle))
     _check_gaps(record, period)
     warnings += _check_shape(record, falls)
-    from_rest, late = _begins_at_rest(record, time, smooth(force, window), falls)
-    warnings += late
+    from_rest, of_start = _begins_at_rest(record, time, smooth(force, window), falls)
+    warnings += of_start
+    if not (from_rest or settled) and (early := _unsettled(time, falls, noise)):
+        told = (f'{record.name}: the first {f"{early} events differ" if early > 1 else "event differs"} from the later ones: the slider '
+                'had not settled, or the surface was changing, when the record began')
+        if len(falls) - early >= LEAST_EVENTS:
+            late = record.time > record.time[0] + falls.end[early - 1]
+            rest = dataclasses.replace(record, time=record.time[late], force=record.force[late], from_rest=False)
+            found = analyse(rest, sense, settled=True)
+            return dataclasses.replace(found, warnings=(*of_start, f'{told}; left out', *found.warnings))
+        warnings.append(f'{told}; too few are left without: take a longer record')
     trend, drift = _drift(record, time, force, falls, from_rest, noise)
     if drift:
         force = force - trend
@@ -300,12 +310,14 @@ def analyse(record: Record, sense: float = 1.0) -> Analysis:
         noise /= np.sqrt(coarser)
         window = max(1, window // coarser // 2 * 2 + 1)
         falls = find_falls(time, smooth(force, window), threshold)
-    gaps = np.diff(falls.middle)
-    drops = falls.peak - falls.trough
-    # The mean of a sorted middle half keeps single outliers from making a record a scattered one.
-    scattered = max(spread(gaps) / np.median(gaps), spread(drops[1:]) / np.median(drops)) > 0.1
-    return Analysis(record, time, force, coarser, noise, own_noise, window, threshold, falls, from_rest, bool(scattered), tuple(warnings),
+    return Analysis(record, time, force, coarser, noise, own_noise, window, threshold, falls, from_rest, _scatters(falls), tuple(warnings),
                     sense, bool(drift))
+
+
+def _scatters(falls: Falls) -> bool:
+    """Do period or drop vary from event to event? Quartiles keep single outliers from making a record a scattered one."""
+    gaps, drops = np.diff(falls.middle), falls.peak - falls.trough
+    return bool(max(spread(gaps) / np.median(gaps), spread(drops[1:]) / np.median(drops)) > 0.1)
 
 
 def spread(values: np.ndarray) -> float:
@@ -427,8 +439,7 @@ def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: 
     known well enough."""
     if record.from_rest is not None:
         return record.from_rest, []
-    peak = float(np.median(falls.peak))
-    if not force[0] < 0.25 * peak:
+    if not force[0] < max(0.05 * np.median(falls.peak), 0.5 * np.median(falls.trough)):   # a cycle may begin there, too
         return False, []
     first = falls.onset[0]
     rise = force[0] + np.array([0.2, 0.6]) * (falls.peak[0] - force[0])
@@ -442,6 +453,27 @@ def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: 
 
 
 PEAK_NOISE = 0.5       # of the noise of a sample: what peaks vary by at least, each the largest of a few samples
+
+
+def _unsettled(time: np.ndarray, falls: Falls, noise: float) -> int:
+    """How many events at the start differ from what the later half, with its drift, says they would be, where those after them do
+    not. Where many do, the level wanders, and where the events scatter, nothing can be said."""
+    if _scatters(falls):
+        return 0
+    timing = max(0.5 * (time[1] - time[0]), noise * float(np.median((falls.end - falls.onset) / (falls.peak - falls.trough))))
+    unsettled = 0
+    for values, least in ((falls.peak, PEAK_NOISE * noise), (falls.trough, PEAK_NOISE * noise), (np.diff(falls.middle), timing)):
+        half = values.size // 2
+        late, since = values[half:], falls.onset[:values.size] - falls.onset[half:values.size].mean()
+        length, known = since[half:] @ since[half:], late.size + 2.0   # noise counts like four events
+        slope = since[half:] @ late / length
+        apart = values - late.mean() - slope * since
+        error = np.sqrt((apart[half:] @ apart[half:] + 4.0 * least**2) / known)
+        if abs(slope) * np.sqrt(length) < 3.0 * error:   # no drift that could be told
+            apart, since = values - late.mean(), np.zeros_like(since)
+        expected = 4.5 * (1.0 + 4.0 / known) * error * np.sqrt(1.0 + 1.0 / late.size + since**2 / length)
+        unsettled = max(unsettled, int(np.max(np.flatnonzero(np.abs(apart[:half]) > expected[:half]) + 1, initial=0)))
+    return unsettled if unsettled <= len(falls) // 3 else 0
 
 
 def _drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, from_rest: bool,

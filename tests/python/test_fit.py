@@ -414,6 +414,26 @@ class Records(unittest.TestCase):
         self.assertRegex(found.warnings[0], '8 samples stand out')
         np.testing.assert_allclose(found.falls.middle, clean.falls.middle, atol=0.02)
 
+    def test_a_record_that_begins_at_the_foot_of_a_cycle_does_not_begin_at_rest(self):
+        """Where the force falls to less than a quarter of its peak."""
+        force = self.force - 1.2
+        part = self.time > analyse(stickslip.Record(self.time, self.force)).falls.end[0]
+        self.assertFalse(analyse(stickslip.Record(self.time[part], force[part])).from_rest)
+        self.assertTrue(analyse(stickslip.Record(self.time, self.force)).from_rest)
+
+    def test_events_before_a_slider_has_settled_are_left_out_and_told(self):
+        soft = {**INPUT['friction'], **TRUE, 'kappa': 10.0, 'xi': 1.0}
+        t, force = synthetic(friction=soft, time={'t_end': 19.0, 'rtol': 1e-8})
+        whole, part = analyse(stickslip.Record(t, force, name='rig')), t > 3.0
+        found = analyse(stickslip.Record(t[part], force[part], name='rig'))
+        self.assertRegex(found.warnings[0], '^rig: the first event differs from the later ones: .* left out')
+        self.assertEqual(len(found.falls), len(whole.falls) - 1)
+        np.testing.assert_array_equal(found.falls.peak, whole.falls.peak[1:])
+        for begin in (5.0, 6.0, 7.0):   # in the second loading, and later
+            self.assertEqual(analyse(stickslip.Record(t[t > begin], force[t > begin])).warnings, ())
+        few = part & (t < 13.0)
+        self.assertRegex(analyse(stickslip.Record(t[few], force[few])).warnings[0], 'too few are left without')
+
     def test_a_drive_that_starts_late_is_told(self):
         idle = np.arange(0.0, 20.0, 0.01)
         found = analyse(stickslip.Record(np.concatenate([idle, 20.0 + self.time]), np.concatenate([0.0 * idle, self.force])))
