@@ -212,17 +212,18 @@ contains
         integer :: n
 
         n = size(rows%lines)
-        drive%start = rows%values(rows%column('time'), :) - rows%values(rows%column('time'), 1)
+        drive%start = rows%numbers('time')
+        drive%start = drive%start - drive%start(1)
         drive%measured_until = drive%start(n)
         if (rows%column('velocity') > 0) then
-            drive%velocity = rows%values(rows%column('velocity'), :)
+            drive%velocity = rows%numbers('velocity')
             drive%acceleration = rate_of(drive%velocity)
         else
-            drive%velocity = rate_of(rows%values(rows%column('displacement'), :))
+            drive%velocity = rate_of(rows%numbers('displacement'))
             drive%acceleration = 0.0_dp * drive%velocity
         end if
         if (rows%column('normal') > 0) then
-            drive%normal = rows%values(rows%column('normal'), :)
+            drive%normal = rows%numbers('normal')
         else
             drive%normal = 0.0_dp * drive%velocity + normal_traction
         end if

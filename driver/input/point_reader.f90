@@ -229,7 +229,7 @@ contains
             tractions(i) = places(i) > 0
             if (places(i) == 0) places(i) = table%column('u_' // trim(directions(i)))
         end do
-        time = table%values(table%column('time'), :)
+        time = table%numbers('time')
         first = 1
         if (starts_at_rest(table)) then
             first = 2

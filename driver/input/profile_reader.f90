@@ -213,7 +213,7 @@ contains
 
         nodes = [0.0_dp]
         if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
-            read_in%values(read_in%column(trim(axis)), :))
+            read_in%numbers(trim(axis)))
     end function nodes_in
 
     subroutine fill_map(read_in, axes, names, map)
