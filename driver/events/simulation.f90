@@ -14,7 +14,7 @@ module simulation
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
-    use slider_system, only : slider, slider_state, swap_states
+    use slider_system, only : slider, slider_state
     use slip_observer, only : slip_watch
     implicit none
     private
@@ -23,8 +23,8 @@ module simulation
 
     !> A run between two steps: all that it needs to go on.
     type :: simulation_run
-        type(slider_state) :: state
-        type(slider_state), private :: other   !! the state before, or room for the next one
+        type(slider_state), allocatable :: state
+        type(slider_state), allocatable, private :: other   !! the one before, or room for the next
         class(integrator), allocatable :: steps
         type(slip_watch) :: slip_events
         type(chain_watch) :: chain_events
@@ -60,6 +60,7 @@ contains
         call live%chain_events%prepare(run)
         call live%slip_events%prepare(run)
         live%problem = ''
+        allocate (live%state)
         call initial_state(system, run%chain%n_blocks, run%drive%normal_traction(0.0_dp, 1), &
             live%state, status)
         if (status < 0) live%problem = 'at the start: ' // friction_message(status)
@@ -80,6 +81,7 @@ contains
         type(outcome), intent(out) :: result
         type(step_news) :: news
         type(step_report) :: report
+        type(slider_state), allocatable :: spare
         character(len=:), allocatable :: why
 
         call news%clear()
@@ -96,11 +98,13 @@ contains
             end if
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
             live%taken = live%taken + 1
-            news%sums = live%steps%sums(live%state, live%other)
+            call live%steps%sums(live%state, live%other, news%sums)
             live%let_go = live%let_go + news%sums%let_go
             if (.not. live%steps%in_rates) live%let_go = live%let_go + news%sums%jumped
             live%most_work = max(live%most_work, abs(live%other%drive_work))
-            call swap_states(live%state, live%other)
+            call move_alloc(live%state, spare)   ! they change places
+            call move_alloc(live%other, live%state)
+            call move_alloc(spare, live%other)
             news%complete = report%complete
             call show_all(live, observers, news)
             if (len(news%problem) > 0) call tell_when(live, news%problem)

@@ -34,7 +34,8 @@ contains
         real(dp), intent(in) :: t   !! [T]
         integer :: i
 
-        i = max(1, nodes_up_to(self%start, t))
+        i = 1
+        if (size(self%start) > 1) i = max(1, nodes_up_to(self%start, t))
     end function piece
 
     !> How far the drive has moved by time `t`.

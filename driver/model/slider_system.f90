@@ -14,7 +14,7 @@ module slider_system
     implicit none
     private
 
-    public :: cohesions, normal_motion, set_accelerations, slider, slider_state, swap_states
+    public :: cohesions, normal_motion, set_accelerations, slider, slider_state
 
     !> What the first and the last block are coupled to.
     integer, parameter, public :: ends_free = 1       !! nothing
@@ -254,34 +254,5 @@ contains
         call use_large_pages(size(self%friction), self%friction)
         call use_large_pages(size(self%statev), self%statev)
     end subroutine state_in_large_pages
-
-    !> Exchanges two states without copying them.
-    pure subroutine swap_states(a, b)
-        type(slider_state), intent(inout) :: a, b
-        type(slider_state) :: other
-
-        call move_state(a, other)
-        call move_state(b, a)
-        call move_state(other, b)
-    end subroutine swap_states
-
-    pure subroutine move_state(from, to)
-        type(slider_state), intent(inout) :: from, to
-
-        to%time = from%time
-        to%drive = from%drive
-        to%normal = from%normal
-        to%load = from%load
-        to%v_n = from%v_n
-        to%a_n = from%a_n
-        to%drive_work = from%drive_work
-        to%damped = from%damped
-        call move_alloc(from%x, to%x)
-        call move_alloc(from%v, to%v)
-        call move_alloc(from%a, to%a)
-        call move_alloc(from%spring, to%spring)
-        call move_alloc(from%friction, to%friction)
-        call move_alloc(from%statev, to%statev)
-    end subroutine move_state
 
 end module slider_system

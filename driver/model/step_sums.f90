@@ -28,11 +28,11 @@ module step_sums
 contains
 
     !> Sums over the blocks `first` to `last`.
-    pure function sum_blocks(system, old, new, first, last) result(sums)
+    pure subroutine sum_blocks(system, old, new, first, last, sums)
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: old, new   !! start and end of a step
         integer, intent(in) :: first, last
-        type(block_sums) :: sums
+        type(block_sums), intent(out) :: sums
         real(dp), parameter :: open = 3.0_dp
         real(dp) :: slip   !! of a block in the step [L]
         real(dp) :: back   !! way that its contact spring goes back [L]
@@ -52,7 +52,7 @@ contains
             if (slip > 0.0_dp .and. back > 0.0_dp) call add_jump(system, old, new, i, slip, back, &
                 sums)
         end do
-    end function sum_blocks
+    end subroutine sum_blocks
 
     pure function alpha_of(system, i) result(alpha)
         type(slider), intent(in) :: system

@@ -121,13 +121,13 @@ contains
     end function finished
 
     !> Over the blocks, for the step that was taken last. An integrator may have them already.
-    pure function sums(self, old, new) result(over_step)
+    pure subroutine sums(self, old, new, over_step)
         class(integrator), intent(in) :: self
         type(slider_state), intent(in) :: old, new   !! of this step
-        type(block_sums) :: over_step
+        type(block_sums), intent(out) :: over_step
 
-        over_step = sum_blocks(self%system, old, new, 1, size(new%x))
-    end function sums
+        call sum_blocks(self%system, old, new, 1, size(new%x), over_step)
+    end subroutine sums
 
     !> The part of `visit` that all integrators share.
     subroutine visit_counts(self, file)

@@ -277,7 +277,7 @@ contains
             do k = 1, size(new%statev, 2)
                 new%statev(first:last, k) = w%new%statev(a:b, k)
             end do
-            report%sums = sum_blocks(w%system, w%old, w%new, a, b)
+            call sum_blocks(w%system, w%old, w%new, a, b, report%sums)
             report%beyond = [w%new%x(max(1, a - 1)), w%new%x(min(width, b + 1))]
         end associate
     end subroutine solve_part

@@ -117,8 +117,9 @@ contains
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
-        type(trial) :: tried, whole
+        type(trial) :: tried
         real(dp) :: end, wanted, before, opening, slipped
+        real(dp) :: h, error   ! of the step in whole, before it ends with a phase
         integer :: piece
         logical :: again
 
@@ -136,7 +137,8 @@ contains
             end associate
             tried%h = end - old%time
             call self%attempt(old%time, tried)
-            whole = tried
+            h = tried%h
+            error = tried%error
             if (tried%error <= 1.0_dp) call self%locate(old%time, tried)
             if (tried%error <= 1.0_dp) exit
             again = .true.
@@ -151,7 +153,7 @@ contains
                 return
             end if
         end do
-        call self%lengthen(whole%h, whole%error, wanted, again)
+        call self%lengthen(h, error, wanted, again)
         if (tried%switch > 0) end = old%time + tried%h
         call self%choose_method(tried)
         associate (block => self%block, eq => self%block%equations)
@@ -198,20 +200,22 @@ contains
             self%block%known = .false.
         end if
         associate (eq => self%block%equations)
-            pressure = self%drive%normal_traction(old%time, piece)
-            open_below = eq%open_below
-            if (eq%across%free()) then
-                pressure = eq%pressed_to(self%block%y)
-            else if (eq%steady) then   ! it is taken as it is
-                open_below = min(0.0_dp, open_below)
+            if (.not. (eq%constant .and. self%block%known)) then   ! else the load is what it was
+                pressure = self%drive%normal_traction(old%time, piece)
+                open_below = eq%open_below
+                if (eq%across%free()) then
+                    pressure = eq%pressed_to(self%block%y)
+                else if (eq%steady) then   ! it is taken as it is
+                    open_below = min(0.0_dp, open_below)
+                end if
+                call take_load(self%block, self%system, pressure, open_below, lost * max(old%time, &
+                    self%dt_min), old, touches)
+                if (touches) then   ! so steeply that Rodas4's differences tell nothing
+                    self%implicit = .false.
+                    self%stiff = 0
+                end if
             end if
         end associate
-        call take_load(self%block, self%system, pressure, open_below, lost * max(old%time, &
-            self%dt_min), old, touches)
-        if (touches) then   ! so steeply that Rodas4's differences for derivatives tell nothing
-            self%implicit = .false.
-            self%stiff = 0
-        end if
         call self%take_limit(old%time)
         call settle(self%block, old%time)
     end subroutine begin
@@ -243,7 +247,7 @@ contains
         logical :: yes
 
         self%rejected = self%rejected + 1
-        self%dt = h * max(0.2_dp, 0.9_dp * error**(-1.0_dp / order_of(self)))
+        self%dt = h * max(0.2_dp, 0.9_dp * error**power_of(self))
         yes = self%dt > max(self%dt_min, shortest * t)
     end function can_shorten
 
@@ -256,17 +260,17 @@ contains
         logical, intent(in) :: again     !! longer ones were refused
 
         self%dt = h * min(merge(1.0_dp, 5.0_dp, again), 0.9_dp * max(error, &
-            1.0e-10_dp)**(-1.0_dp / order_of(self)))
+            1.0e-10_dp)**power_of(self))
         if (h < 0.99_dp * wanted) self%dt = max(self%dt, wanted)
     end subroutine lengthen
 
-    !> Order of the estimate of the error.
-    pure function order_of(self) result(order)
+    !> Power of the error by which a step's length changes: one over the order of its estimate.
+    pure function power_of(self) result(power)
         class(continuous), intent(in) :: self
-        real(dp) :: order
+        real(dp) :: power
 
-        order = merge(4.0_dp, 5.0_dp, self%implicit)
-    end function order_of
+        power = merge(-1.0_dp / 4.0_dp, -1.0_dp / 5.0_dp, self%implicit)
+    end function power_of
 
     !> Takes a step by the method in use.
     subroutine attempt(self, t, tried)
@@ -442,22 +446,17 @@ contains
         integer, intent(in) :: piece
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
-        real(dp) :: dy(unknowns)
         logical :: failed
 
-        associate (eq => self%block%equations, y => self%block%y)
+        associate (eq => self%block%equations, y => self%block%y, dy => self%block%first)
             new%time = t
             new%drive = self%origin + self%drive%position(t)
             new%load = self%drive%normal_traction(t, piece)
             new%normal = new%load
-            if (eq%across%free()) new%normal = self%system%carried_pressure(y(place))
+            if (eq%across%mass > 0.0_dp) new%normal = self%system%carried_pressure(y(place))
             new%drive_work = y(drive_work)
             new%damped = y(damped)
-            if (self%block%known) then
-                dy = self%block%first
-            else
-                call eq%rates(t, y, dy, failed)
-            end if
+            if (.not. self%block%known) call eq%rates(t, y, dy, failed)
             call fill_block(eq, new%normal, t, y, dy, 1, old, new)
             if (.not. eq%mass > 0.0_dp) then
                 new%v(1) = self%drive%drive_velocity(t, piece) - dy(extension)
@@ -465,7 +464,7 @@ contains
                     eq%sense_of(y(extension)) * dy(slip)   ! slow beside the drive, too
             end if
             new%statev(1, statev_u_n) = -new%normal / self%system%props(prop_alpha_n)
-            if (.not. eq%across%free()) return
+            if (.not. eq%across%mass > 0.0_dp) return
             new%statev(1, statev_u_n) = y(place)
             new%v_n = y(away)
             new%a_n = dy(away)

@@ -2,7 +2,7 @@
 !> 1980) for the rate equations of a block.
 module dormand_prince
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use slider_rates, only : along, controlled, slider_equations, unknowns
+    use slider_rates, only : controlled, slider_equations, unknowns
     implicit none
     private
 
@@ -38,10 +38,9 @@ contains
         real(dp) :: w(controlled)
         real(dp) :: change, way
         logical :: failed
-        integer :: n   !! unknowns that act on the others
-        integer :: i
+        integer :: n, i
 
-        n = merge(controlled, along, equations%across%free())
+        n = equations%acting
         error = huge(error)
         stiffness = 0.0_dp
         w(:n) = y(:n) + h * (a21 * first(:n))

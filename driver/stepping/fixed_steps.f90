@@ -144,13 +144,13 @@ contains
         end if
     end subroutine step
 
-    pure function sums(self, old, new) result(over_step)
+    pure subroutine sums(self, old, new, over_step)
         class(fixed), intent(in) :: self
         type(slider_state), intent(in) :: old, new
-        type(block_sums) :: over_step
+        type(block_sums), intent(out) :: over_step
 
         over_step = self%over_step
-    end function sums
+    end subroutine sums
 
     subroutine visit(self, file)
         class(fixed), intent(inout) :: self

@@ -36,7 +36,7 @@ contains
         logical :: jumps, gradual, capped
 
         g = -1.0_dp
-        if (eq%across%free()) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
+        if (eq%across%mass > 0.0_dp) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
             * (eq%open_below - eq%pressed_to(y))
         if (eq%damper > 0.0_dp) then
             if (eq%follows_share() .and. eq%phase /= phase_open) g(1) = share_switch(eq, t, y)

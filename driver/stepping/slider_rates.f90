@@ -49,11 +49,12 @@ module slider_rates
         type(programme) :: drive
         integer :: piece = 0             !! of the programme, in which the rates are taken
         logical :: steady = .false.      !! drive and load do not change in it
-        logical, private :: constant = .false.   !! nor does the pressure: they are
+        logical :: constant = .false.    !! nor does the pressure: they are
         real(dp), private :: constant_velocity = 0.0_dp   !! [L/T]
         real(dp), private :: constant_pressure = 0.0_dp   !! [F/L^2]
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
         logical :: eased = .false.       !! the pressure comes to that smoothly
+        integer :: acting = controlled   !! first unknowns, which act on the others
         integer :: phase = phase_stick
         real(dp) :: sense = 1.0_dp       !! of the slip in x, where the phase has one
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
@@ -66,7 +67,7 @@ module slider_rates
     !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
     real(dp), parameter :: least_ratio = 1.0e-12_dp
 
-    !> What a contact does to the block.
+    !> What a contact does to the block. Those that find it fill in what is not zero.
     type :: contact_motion
         real(dp) :: velocity = 0.0_dp   !! of the block [L/T]
         real(dp) :: traction = 0.0_dp   !! opposes +x [F/L^2]
@@ -84,6 +85,9 @@ contains
         self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
             .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
         self%constant = self%steady .and. .not. self%across%free()
+        self%acting = ratio - 1
+        if (self%damper > 0.0_dp .or. self%surface%tau_max < huge(1.0_dp)) self%acting = ratio
+        if (self%across%free()) self%acting = controlled
         self%constant_velocity = self%drive%velocity(piece)
         self%constant_pressure = max(self%drive%normal(piece), self%least_pressure)
     end subroutine enter
@@ -251,7 +255,7 @@ contains
     pure subroutine elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), v_drive, pressure, pressure_rate
-        type(contact_motion), intent(out) :: contact
+        type(contact_motion), intent(inout) :: contact
         logical, intent(out) :: failed
         type(load_rates) :: load
         type(law_state) :: state, changes
@@ -306,7 +310,7 @@ contains
     pure subroutine damped_contact(self, y, pull, v_drive, pressure, pressure_rate, contact, failed)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), pull, v_drive, pressure, pressure_rate
-        type(contact_motion), intent(out) :: contact
+        type(contact_motion), intent(inout) :: contact
         logical, intent(out) :: failed
         type(damper_balance) :: balance
         type(load_rates) :: load
@@ -435,7 +439,7 @@ contains
         failed)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), pull, v_drive, pressure, pressure_rate
-        type(contact_motion), intent(out) :: contact
+        type(contact_motion), intent(inout) :: contact
         logical, intent(out) :: failed
         real(dp) :: v, resistance, by_rate, acceleration
 
@@ -468,7 +472,7 @@ contains
     pure subroutine rigid_contact(self, y, pull, pressure, pressure_rate, contact, failed)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
-        type(contact_motion), intent(out) :: contact
+        type(contact_motion), intent(inout) :: contact
         logical, intent(out) :: failed
         type(load_rates) :: load
         type(law_state) :: state
@@ -534,7 +538,7 @@ contains
     pure subroutine following_contact(self, y, pull, pressure, pressure_rate, contact)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled), pull, pressure, pressure_rate
-        type(contact_motion), intent(out) :: contact
+        type(contact_motion), intent(inout) :: contact
         type(load_rates) :: load
         type(law_state) :: state
         real(dp) :: sense, tau, by_rate, by_memory, acceleration

@@ -140,7 +140,7 @@ contains
         type(slider_state), intent(in) :: old, new   !! of this step
         type(block_sums) :: over_step
 
-        over_step = sum_blocks(system, old, new, 1, size(new%x))
+        call sum_blocks(system, old, new, 1, size(new%x), over_step)
     end function sums
 
     !> Newton's method, with steps cut where the residual would rise.
