@@ -166,7 +166,9 @@ contains
         real(dp), intent(in) :: dt   !! since `held` [T]
         real(dp) :: v                !! [L/T]
 
-        v = max(0.0_dp, self%held - now%holds) / (self%stiffness * dt)
+        v = 0.0_dp
+        if (now%holds >= self%held) return
+        v = (self%held - now%holds) / (self%stiffness * dt)
         if (self%impedance > 0.0_dp) v = min(v, max(0.0_dp, self%peak%holds - now%holds) &
             / self%impedance)
     end function freed

@@ -141,14 +141,13 @@ contains
         integer, intent(in) :: k   !! 1: the state at its start, 2: at its end
         integer, intent(in) :: i   !! piece of the programme
         type(moment) :: now
-        real(dp) :: velocity       !! mean over the blocks [L/T]
-        integer :: n
+        real(dp) :: means(3)       !! over the blocks: velocity, force, slip
 
-        n = size(state%x)
-        velocity = sums%velocity(k) / n
-        now = moment(state%time, sums%spring(k) / n, sums%slip(k) / n, velocity, &
-            self%stiffness * (self%drive%drive_velocity(state%time, i) - velocity), state%drive, &
-            self%area * self%coefficient * max(0.0_dp, self%drive%normal_traction(state%time, i)))
+        means = [sums%velocity(k), sums%spring(k), sums%slip(k)]
+        if (size(state%x) > 1) means = means / size(state%x)
+        now = moment(state%time, means(2), means(3), means(1), self%stiffness &
+            * (self%drive%drive_velocity(state%time, i) - means(1)), state%drive, self%area &
+            * self%coefficient * max(0.0_dp, self%drive%normal_traction(state%time, i)))
     end function seen
 
     !> Counts an event in the piece of the programme that starts at `piece_start`. A recurrence time

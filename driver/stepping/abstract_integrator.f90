@@ -27,8 +27,8 @@ module abstract_integrator
         integer :: iterations = 0           !! linear systems solved
         real(dp) :: stiffness = 0.0_dp      !! of drive spring and contact at the end, largest [F/L]
         real(dp) :: scale = 0.0_dp          !! the largest force, by which a residual is held [F]
-        real(dp) :: residual(0:most_shown) = 0.0_dp   !! relative, before each iteration and at the
-                                                      !! end
+        real(dp) :: residual(0:most_shown)  !! relative, before each iteration and at the end; not
+                                            !! set beyond these
     end type step_report
 
     type, abstract :: integrator

@@ -73,13 +73,15 @@ contains
 
     !> What the errors are compared with of unknowns that grow beyond their natural sizes: their
     !> own, but not less than the amplitude of the contact's ringing.
-    pure subroutine set_growing_weights(rtol, natural, y, weights)
-        real(dp), intent(in) :: rtol, natural(controlled), y(controlled)
-        real(dp), intent(inout) :: weights(controlled)   !! inverse of the tolerated errors
+    pure subroutine set_growing_weights(n, rtol, natural, y, weights)
+        integer, intent(in) :: n   !! unknowns that act on the others
+        real(dp), intent(in) :: rtol, natural(n), y(n)
+        real(dp), intent(inout) :: weights(n)   !! inverse of the tolerated errors
 
         weights(velocity) = 1.0_dp / (rtol * max(natural(velocity), abs(y(velocity))))
         weights(extension) = 1.0_dp / (rtol * max(natural(extension), abs(y(extension))))
-        weights(place:away) = 1.0_dp / (rtol * max(natural(place:away), abs(y(place:away))))
+        if (n > along) weights(place:away) = 1.0_dp / (rtol * max(natural(place:away), &
+            abs(y(place:away))))
     end subroutine set_growing_weights
 
     !> Puts the block where a state has it.

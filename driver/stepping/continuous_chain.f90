@@ -12,7 +12,7 @@ module continuous_chain
     use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings
-    use slider_rates, only : damped, drive_work, phase_slide, unknowns
+    use slider_rates, only : along, damped, drive_work, phase_slide, unknowns
     use slider_system, only : ends_periodic, slider, slider_state
     use step_ends, only : end_of_step
     implicit none
@@ -118,7 +118,7 @@ contains
         if (.not. self%block%known) call self%chain%rates(old%time, self%now, self%now_rates, &
             failed)
         do i = 1, size(self%now, 2)
-            call set_growing_weights(self%rtol, self%rodas%natural(:, i), self%now(:, i), &
+            call set_growing_weights(along, self%rtol, self%rodas%natural(:, i), self%now(:, i), &
                 self%rodas%weights(:, i))
         end do
         again = .false.

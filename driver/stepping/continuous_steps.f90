@@ -309,7 +309,8 @@ contains
         real(dp), parameter :: tight = 1.0e-4_dp   !! of traction over pressure, part of friction
         real(dp) :: v_drive, pressure, pressure_rate
 
-        call set_growing_weights(self%rtol, self%natural, self%block%y, self%weights)
+        call set_growing_weights(self%block%equations%acting, self%rtol, self%natural, &
+            self%block%y, self%weights)
         if (.not. self%reloaded) return
         call self%block%equations%inputs(t, self%block%y, v_drive, pressure, pressure_rate)
         pressure = max(pressure, self%block%equations%open_below, &
@@ -337,7 +338,7 @@ contains
         real(dp) :: g(switches), low, high, g_low, g_high, middle, share
         integer :: i, which, side
 
-        g = switch_values(self%block%equations, t + tried%h, tried%y, tried%last)
+        call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
         if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
         if (all(g <= 0.0_dp)) return
         which = 0
@@ -363,7 +364,7 @@ contains
                 tried = again
                 return
             end if
-            g = switch_values(self%block%equations, t + middle, again%y, again%last)
+            call switch_values(self%block%equations, t + middle, again%y, again%last, g)
             if (g(which) > 0.0_dp) then
                 high = middle
                 g_high = g(which)
@@ -406,7 +407,7 @@ contains
             if (.not. again%error < huge(again%error)) return
             tried = again
             if (again%error > 1.0_dp) return
-            g = switch_values(self%block%equations, t + again%h, again%y, again%last)
+            call switch_values(self%block%equations, t + again%h, again%y, again%last, g)
             if (g(which) > 0.0_dp .or. again%h >= latest) return
         end do
     end subroutine pass

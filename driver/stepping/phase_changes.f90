@@ -24,12 +24,12 @@ contains
     !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
     !> cap and law change places, 3 because the law changes its form, 4 because the block leaves the
     !> base or comes back.
-    pure function switch_values(eq, t, y, dy) result(g)
+    pure subroutine switch_values(eq, t, y, dy, g)
         type(slider_equations), intent(in) :: eq
         real(dp), intent(in) :: t              !! [T]
         real(dp), intent(in) :: y(controlled)
         real(dp), intent(in) :: dy(unknowns)   !! rates there
-        real(dp) :: g(switches)
+        real(dp), intent(out) :: g(switches)
         real(dp), parameter :: just_below = 1.0_dp - 1.0e-9_dp   !! or round-off would call it back
         type(load_rates) :: load
         real(dp) :: v_drive, pressure, pressure_rate, own, by_rate
@@ -83,7 +83,7 @@ contains
                 end if
             end select
         end associate
-    end function switch_values
+    end subroutine switch_values
 
     !> Positive where a subloading surface beside a damper stops to slide, or starts.
     pure function share_switch(eq, t, y) result(g)
@@ -133,7 +133,7 @@ contains
             y = block%y + middle * change + middle * (middle - 1.0_dp) * ((1.0_dp - 2.0_dp &
                 * middle) * change + h * ((middle - 1.0_dp) * block%first + middle * last))
             call block%equations%rates(t + middle * h, y, dy, failed)
-            g = switch_values(block%equations, t + middle * h, y, dy)
+            call switch_values(block%equations, t + middle * h, y, dy, g)
             if (g(which) > 0.0_dp) then
                 share = middle
             else
@@ -158,7 +158,7 @@ contains
                 if (.not. block%known) call eq%rates(t, block%y, block%first, failed)
                 if (.not. block%known .and. .not. failed) block%known = .true.
                 if (eq%phase == phase_open) return
-                g = switch_values(eq, t, block%y, block%first)
+                call switch_values(eq, t, block%y, block%first, g)
                 if (eq%phase == phase_stick .and. .not. eq%damper > 0.0_dp) then
                     call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
                     if (g(1) < -round_off * eq%strength(block%y, pressure)) return
