@@ -449,7 +449,8 @@ contains
         call read_material(t%props, mat)   ! differences see no pressure beside such a cohesion
         if (abs(t%traction(1)) < 1.0e-9_qp * mat%cohesion) return
         h(1) = 1.0e-13_qp * (abs(t%du(1)) + abs(t%old(2)))
-        h(2:3) = 1.0e-13_qp * (norm2(t%du(2:3)) + norm2(t%old(3:4)))
+        ! gfortran's norm2 does not scale: the square of a small displacement would be 0
+        h(2:3) = 1.0e-13_qp * (norm2(real(t%du(2:3), qp)) + norm2(real(t%old(3:4), qp)))
         h = max(h, 1.0e-200_qp)
         by_du = 0.0_qp
         do j = 1, m
