@@ -14,7 +14,7 @@ module simulation
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
-    use slider_system, only : slider, slider_state
+    use slider_system, only : slider, slider_state, swap_states
     use slip_observer, only : slip_watch
     implicit none
     private
@@ -81,7 +81,6 @@ contains
         type(outcome), intent(out) :: result
         type(step_news) :: news
         type(step_report) :: report
-        type(slider_state), allocatable :: spare
         character(len=:), allocatable :: why
 
         call news%clear()
@@ -102,9 +101,7 @@ contains
             live%let_go = live%let_go + news%sums%let_go
             if (.not. live%steps%in_rates) live%let_go = live%let_go + news%sums%jumped
             live%most_work = max(live%most_work, abs(live%other%drive_work))
-            call move_alloc(live%state, spare)   ! they change places
-            call move_alloc(live%other, live%state)
-            call move_alloc(spare, live%other)
+            call swap_states(live%state, live%other)
             news%complete = report%complete
             call show_all(live, observers, news)
             if (len(news%problem) > 0) call tell_when(live, news%problem)

@@ -688,7 +688,7 @@ contains
         real(dp) :: values(size(self%values, 2))
         integer :: place
 
-        if (size(values) == 0) return   ! nor has a faulty table columns
+        if (size(values) == 0) return
         place = self%column(name)
         values = self%values(place, :)
     end function numbers

@@ -7,7 +7,7 @@ module run_reader
     use drive_reader, only : read_drive
     use friction_mod, only : facts => law_facts, friction_facts, onset_gradual
     use input_fingerprint, only : listing_fingerprint
-    use law_facts, only : has_r, pressure_effect, typical_strength
+    use law_facts, only : has_r, largest_pressure_effect, pressure_effect, typical_strength
     use law_input, only : refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file
     use run_settings, only : settings
@@ -368,15 +368,14 @@ contains
     subroutine check_pressing(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(in) :: run
-        real(dp), parameter :: largest = 28.0_dp   !! open below 8e-4 of the largest normal traction
 
         if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
         if (.not. run%adaptive .or. run%one_by_itself() .and. .not. run%newmark) return
         if (.not. run%load_vanishes()) return
-        if (pressure_effect(run%props, run%chain%constants) > largest) call file%reject( &
-            'friction', 'alpha', 'must not exceed 28 b with a normal traction that vanishes in ' &
-            // 'adaptive steps (&time rtol) of chains, or with beta, gamma or rho_infinity: the ' &
-            // 'state would leave the range of numbers')
+        if (pressure_effect(run%props, run%chain%constants) <= largest_pressure_effect) return
+        call file%reject('friction', 'alpha', 'must not exceed 28 b with a normal traction that ' &
+            // 'vanishes in adaptive steps (&time rtol) of chains, or with beta, gamma or ' &
+            // 'rho_infinity: the state would leave the range of numbers')
     end subroutine check_pressing
 
     !> The spring of the contact, which continuous time can do without.

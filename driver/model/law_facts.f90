@@ -10,6 +10,10 @@ module law_facts
     public :: cohesion_of_each, has_r, internal_variable, pressure_effect, pressure_effects, &
         typical_strength
 
+    !> Of `pressure_effect`, where the contact counts as open before its pressure vanishes: below
+    !> 8e-4 of the largest [-].
+    real(dp), parameter, public :: largest_pressure_effect = 28.0_dp
+
 contains
 
     !> Has the law a similarity ratio R, which tells how much of the friction is mobilised?

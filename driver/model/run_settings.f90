@@ -44,7 +44,7 @@ module run_settings
         type(units) :: units                !! that the numbers are in, for pictures
         integer(int64) :: fingerprint = 0   !! another one for any input with other results
     contains
-        procedure :: event_force, load_vanishes, loading_sense, one_by_itself
+        procedure :: event_force, load_vanishes, load_varies, loading_sense, one_by_itself
     end type settings
 
 contains
@@ -63,9 +63,16 @@ contains
         class(settings), intent(in) :: self
         logical :: yes
 
-        yes = minval(self%drive%normal) - self%drive%amplitude <= 0.0_dp &
-            .and. (self%drive%amplitude > 0.0_dp .or. any(abs(self%drive%normal_rate) > 0.0_dp))
+        yes = minval(self%drive%normal) - self%drive%amplitude <= 0.0_dp .and. self%load_varies()
     end function load_vanishes
+
+    !> Does the normal traction change, other than at once?
+    pure function load_varies(self) result(yes)
+        class(settings), intent(in) :: self
+        logical :: yes
+
+        yes = self%drive%amplitude > 0.0_dp .or. any(abs(self%drive%normal_rate) > 0.0_dp)
+    end function load_varies
 
     !> Is there one block alone, which nothing but its drive spring holds?
     pure function one_by_itself(self) result(yes)

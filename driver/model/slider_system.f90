@@ -14,7 +14,7 @@ module slider_system
     implicit none
     private
 
-    public :: cohesions, normal_motion, set_accelerations, slider, slider_state
+    public :: cohesions, normal_motion, set_accelerations, slider, slider_state, swap_states
 
     !> What the first and the last block are coupled to.
     integer, parameter, public :: ends_free = 1       !! nothing
@@ -254,5 +254,15 @@ contains
         call use_large_pages(size(self%friction), self%friction)
         call use_large_pages(size(self%statev), self%statev)
     end subroutine state_in_large_pages
+
+    !> Exchanges two states without copying them.
+    pure subroutine swap_states(a, b)
+        type(slider_state), allocatable, intent(inout) :: a, b
+        type(slider_state), allocatable :: other
+
+        call move_alloc(a, other)
+        call move_alloc(b, a)
+        call move_alloc(other, b)
+    end subroutine swap_states
 
 end module slider_system

@@ -16,8 +16,8 @@ module adaptive_steps
     use law_facts, only : pressure_effect
     use run_settings, only : settings
     use slider_system, only : set_accelerations, slider, slider_state
-    use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short, &
-        within_range
+    use step_ends, only : end_of_step, find_opening, load_at, next_limit, none_below, &
+        vanishing_part, why_too_short, within_range
     use time_integrator, only : newmark
     use turning_times, only : turn
     implicit none
@@ -47,7 +47,7 @@ module adaptive_steps
         type(slider_state), private :: error      !! room for an estimate
     contains
         procedure :: prepare, step, visit, why_stopped
-        procedure, private :: try, try_twice, error_of, extrapolate, reversal, none_below, load
+        procedure, private :: try, try_twice, error_of, extrapolate, reversal
     end type adaptive
 
 contains
@@ -95,29 +95,6 @@ contains
         call self%explain_status(status, why_too_short(self%dt_min), why)
     end subroutine why_stopped
 
-    !> The normal traction that counts as none in a piece of the programme: one that does not vary
-    !> is taken as it is.
-    pure function none_below(self, piece) result(pressure)
-        class(adaptive), intent(in) :: self
-        integer, intent(in) :: piece
-        real(dp) :: pressure   !! [F/L^2]
-
-        pressure = 0.0_dp
-        if (self%drive%amplitude > 0.0_dp) pressure = self%open_below
-        if (abs(self%drive%normal_rate(piece)) > 0.0_dp) pressure = self%open_below
-    end function none_below
-
-    !> The normal traction at a time [F/L^2].
-    pure function load(self, time, piece)
-        class(adaptive), intent(in) :: self
-        real(dp), intent(in) :: time   !! [T]
-        integer, intent(in) :: piece
-        real(dp) :: load
-
-        load = self%drive%normal_traction(time, piece)
-        if (load <= self%none_below(piece)) load = min(0.0_dp, load)
-    end function load
-
     !> One step from `old` to `time`, in one piece of the programme.
     subroutine try(self, old, time, piece, new, report, guess)
         class(adaptive), intent(inout) :: self
@@ -129,7 +106,8 @@ contains
         real(dp), intent(in), optional :: guess(:)   !! of the displacements [L]
 
         call self%method%step(self%system, self%origin + self%drive%position(time), &
-            self%load(time, piece), time - old%time, old, new, report, guess)
+            load_at(self%drive, time, piece, self%open_below), time - old%time, old, new, report, &
+            guess)
         if (report%status >= 0) call account(self%system, self%method%sums(self%system, old, new), &
             old, new)
         new%time = time
@@ -150,13 +128,14 @@ contains
         power = 1.0_dp / (self%order + 1)
         piece = self%drive%piece(old%time)
         limit = next_limit(self%drive, self%every, self%t_end, shortest, old%time)
-        call apply_normal_traction(self%system, self%load(old%time, piece), old, pressed)
+        call apply_normal_traction(self%system, load_at(self%drive, old%time, piece, &
+            self%open_below), old, pressed)
         event = huge(event)
         cuts = 0
         do
             end = end_of_step(old%time, min(old%time + self%dt, event) - old%time, limit)
-            call find_opening(self%drive, piece, self%none_below(piece), old%normal <= 0.0_dp, &
-                old%time, end, kink, after)
+            call find_opening(self%drive, piece, none_below(self%drive, piece, self%open_below), &
+                old%normal <= 0.0_dp, old%time, end, kink, after)
             if (old%normal <= 0.0_dp .and. self%open_below > 0.0_dp) kink = after   ! as it opened
             if (matters(kink) .and. .not. self%system%across%free()) end = kink
             dt = end - old%time
@@ -166,8 +145,7 @@ contains
                 error = self%error_of()
                 if (error <= 1.0_dp) then
                     event = self%reversal(old)
-                    if (.not. matters(event)) exit
-                    if (cuts == most_cuts) exit
+                    if (.not. matters(event) .or. cuts == most_cuts) exit
                     cuts = cuts + 1
                     cycle
                 end if

@@ -63,8 +63,8 @@ contains
         self%rtol = run%rtol
         self%largest = run%drive%largest_normal()
         associate (normal => run%drive%normal)
-            self%reloaded = minval(normal) < maxval(normal) .or. run%drive%amplitude > 0.0_dp &
-                .or. any(abs(run%drive%normal_rate) > 0.0_dp) .or. run%across%free()
+            self%reloaded = minval(normal) < maxval(normal) .or. run%load_varies() &
+                .or. run%across%free()
         end associate
         associate (eq => self%block%equations)
             self%block%props = run%props

@@ -6,11 +6,10 @@ module fixed_steps
     use chain_parts, only : choose_method
     use energies, only : account
     use friction_mod, only : statev_r
-    use law_facts, only : pressure_effects
-    use loading_programme, only : programme
+    use law_facts, only : largest_pressure_effect, pressure_effects
     use run_settings, only : settings
     use slider_system, only : slider, slider_state
-    use step_ends, only : within_range
+    use step_ends, only : load_at, most_change, none_below, within_range
     use step_sums, only : block_sums
     use time_integrator, only : newmark
     implicit none
@@ -29,14 +28,11 @@ module fixed_steps
                                               !! varies under a law with such an effect [F/L^2]
     contains
         procedure :: prepare, step, sums, visit, why_stopped
-        procedure, private :: load, carry_over
+        procedure, private :: carry_over
     end type fixed
 
     integer, parameter :: most_parts = 2**20   !! of a step
     real(dp), parameter :: round_off = 1.0e-9_dp   !! part of a step
-    !> Part of the largest normal traction that counts as none at most, or at least, where a law's
-    !> state depends on it.
-    real(dp), parameter :: least_part = 1.0e-6_dp, largest_effect = 28.0_dp
 
 contains
 
@@ -45,33 +41,14 @@ contains
         type(settings), intent(in) :: run
         type(slider), intent(in) :: system
         type(slider_state), intent(in) :: start
+        real(dp), parameter :: least_part = 1.0e-6_dp   !! of the largest, which counts as none
 
         call self%take_run(run, system, start)
         call choose_method(run, self%method)
         self%effects = pressure_effects(system%props, system%constants)
         if (any(self%effects > 0.0_dp)) self%open_below = run%drive%largest_normal() &
-            * max(least_part, within_range(min(largest_effect, maxval(self%effects))))
+            * max(least_part, within_range(min(largest_pressure_effect, maxval(self%effects))))
     end subroutine prepare
-
-    !> The normal traction at a time [F/L^2].
-    pure function load(self, time)
-        class(fixed), intent(in) :: self
-        real(dp), intent(in) :: time   !! [T]
-        real(dp) :: load
-        integer :: piece
-
-        piece = self%drive%piece(time + round_off * self%dt)
-        load = self%drive%normal_traction(time, piece)
-        if (load <= self%open_below .and. varies(self%drive, piece)) load = min(0.0_dp, load)
-    end function load
-
-    pure function varies(drive, piece) result(yes)
-        type(programme), intent(in) :: drive
-        integer, intent(in) :: piece
-        logical :: yes
-
-        yes = drive%amplitude > 0.0_dp .or. abs(drive%normal_rate(piece)) > 0.0_dp
-    end function varies
 
     !> A state that depends on the pressure has no bound where that vanishes; the law keeps it as it
     !> is in an increment that opens or closes the contact, wherever within the step that happens.
@@ -81,14 +58,13 @@ contains
         class(fixed), intent(in) :: self
         type(slider_state), intent(in) :: old
         type(slider_state), intent(inout) :: new
-        real(dp), parameter :: most = 200.0_dp   !! change of the logarithm, as the law has it
         real(dp) :: change
         integer :: i
 
         if (.not. self%open_below > 0.0_dp) return
         if (old%normal > 0.0_dp .eqv. new%normal > 0.0_dp) return
-        if (.not. (self%system%across%free() .or. varies(self%drive, self%drive%piece(new%time &
-            - round_off * self%dt)))) return
+        if (.not. (self%system%across%free() .or. none_below(self%drive, self%drive%piece( &
+            new%time - round_off * self%dt), self%open_below) > 0.0_dp)) return
         if (old%normal > 0.0_dp) then
             change = log(old%normal / self%open_below)
         else
@@ -97,7 +73,7 @@ contains
         do i = 1, size(new%x)
             associate (theta => new%statev(i, statev_r), &
                 effect => self%effects(min(i, size(self%effects))))
-                theta = theta * exp(max(-most, min(most, effect * change)))
+                theta = theta * exp(max(-most_change, min(most_change, effect * change)))
             end associate
         end do
     end subroutine carry_over
@@ -120,7 +96,8 @@ contains
             time = aim
             if (.not. complete) time = old%time + (aim - old%time) / self%parts
             call self%method%step(self%system, self%origin + self%drive%position(time), &
-                self%load(time), time - old%time, old, new, report)
+                load_at(self%drive, time, self%drive%piece(time + round_off * self%dt), &
+                self%open_below), time - old%time, old, new, report)
             if (report%status >= 0) then
                 self%over_step = self%method%sums(self%system, old, new)
                 call account(self%system, self%over_step, old, new)

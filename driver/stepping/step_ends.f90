@@ -1,4 +1,5 @@
-!> Where an adaptive step ends for other reasons than its error.
+!> Where an adaptive step ends for other reasons than its error, and what normal traction counts as
+!> none.
 module step_ends
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_programme, only : programme
@@ -6,8 +7,11 @@ module step_ends
     implicit none
     private
 
-    public :: end_of_step, find_opening, next_limit, vanishing_part, why_too_short, &
-        within_range
+    public :: end_of_step, find_opening, load_at, next_limit, none_below, vanishing_part, &
+        why_too_short, within_range
+
+    !> Of the logarithm of what the law remembers by a change of the pressure, as the law has it.
+    real(dp), parameter, public :: most_change = 200.0_dp
 
 contains
 
@@ -61,11 +65,35 @@ contains
     pure function within_range(effect) result(part)
         real(dp), intent(in) :: effect   !! of the pressure [-]
         real(dp) :: part
-        real(dp), parameter :: most = 200.0_dp   !! change of its logarithm
 
         part = 0.0_dp
-        if (effect > 0.0_dp) part = exp(-most / effect)
+        if (effect > 0.0_dp) part = exp(-most_change / effect)
     end function within_range
+
+    !> The normal traction that counts as none in a piece of the programme: one that does not vary
+    !> is taken as it is.
+    pure function none_below(drive, piece, open_below) result(pressure)
+        type(programme), intent(in) :: drive
+        integer, intent(in) :: piece
+        real(dp), intent(in) :: open_below   !! what counts as none where it varies [F/L^2]
+        real(dp) :: pressure                 !! [F/L^2]
+
+        pressure = 0.0_dp
+        if (drive%amplitude > 0.0_dp .or. abs(drive%normal_rate(piece)) > 0.0_dp) pressure &
+            = open_below
+    end function none_below
+
+    !> The normal traction at a time, 0 where it counts as none [F/L^2].
+    pure function load_at(drive, time, piece, open_below) result(load)
+        type(programme), intent(in) :: drive
+        real(dp), intent(in) :: time   !! [T]
+        integer, intent(in) :: piece
+        real(dp), intent(in) :: open_below   !! as in `none_below` [F/L^2]
+        real(dp) :: load
+
+        load = drive%normal_traction(time, piece)
+        if (load <= none_below(drive, piece, open_below)) load = min(0.0_dp, load)
+    end function load_at
 
     !> When the normal traction falls to a threshold within a step, or rises above: the last moment
     !> before and the first one after; huge if neither happens.
