@@ -185,13 +185,13 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
             candidate, stopped = search(problem, seed, starts)
             problem.limits.most = problem.limits.seconds = None   # the rest is short, and nothing without it
             return _assess(problem, candidate, stopped)
-        except NoStickSlip:
-            raise _no_stick_slip(problem) from None
+        except NoStickSlip as none:
+            raise _no_stick_slip(problem, str(none)) from None
         finally:
             journal.close()
 
 
-def _no_stick_slip(problem: Problem) -> ValueError:
+def _no_stick_slip(problem: Problem, why: str) -> ValueError:
     """Why no candidate is like the records: the input may be wrong, and the program then knows how."""
     middle = 0.5 * (problem.low + problem.high)
     for target in problem.targets:
@@ -201,8 +201,8 @@ def _no_stick_slip(problem: Problem) -> ValueError:
             check_runs(settings)
         except ValueError as error:
             return type(error)(f'fit: {target.analysis.record.name}, in the middle of the bounds: {error}')
-    return ValueError('fit: no candidate within the bounds shows as many slip events as the records: widen the bounds, or '
-                      'question the model')
+    why = why or 'no candidate within the bounds shows as many slip events as the records: widen the bounds, or question the model'
+    return ValueError(f'fit: {why}')
 
 
 _SIMULATE: Simulate = spring_force

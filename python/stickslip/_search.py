@@ -348,7 +348,7 @@ def search(problem: Problem, seed: int, starts: int) -> tuple[np.ndarray, str]:
     except Stopped as stop:
         found = best.rough if best.candidate is None else best.candidate
         if found is None:
-            raise ValueError(f'the search was stopped {stop}, before any candidate showed stick-slip') from None
+            raise NoStickSlip(f'the search was stopped {stop}, before any candidate showed stick-slip') from None
         return found, f'the search was stopped {stop}: the values are the best so far'
     return best.place, ''
 

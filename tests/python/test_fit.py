@@ -341,7 +341,9 @@ class Fit(unittest.TestCase):
             stickslip.fit(self.record, INPUT, free=None)
         rig = dataclasses.replace(self.record, settings={'drive': {'velocity': 'x'}}, name='rig')
         with self.assertRaisesRegex(stickslip.InputError, "fit: rig, in the middle of the bounds: .*velocity = 'x': must be a number"):
-            stickslip.fit(rig, INPUT, **SETTINGS)
+            stickslip.fit(rig, INPUT, **SETTINGS, most_evaluations=2)   # also of a search that is stopped early
+        with self.assertRaisesRegex(ValueError, 'fit: the search was stopped after 1 evaluations, before any'):
+            stickslip.fit(self.record, INPUT, free=['mu_s'], bounds={'mu_s': (0.25001, 0.2502)}, starts=4, most_evaluations=1)
 
     def test_bounds_and_names_are_checked(self):
         for free, bounds, words in ((['time.rtol'], {'time.rtol': (1e-6, 1e-3)}, 'time.rtol: free are constants .*&time has none'),
