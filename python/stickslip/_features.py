@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ._records import Analysis, Falls, average, find_falls, smooth, straight_trend
+from ._records import Analysis, Falls, average, find_falls, means_between, smooth, straight_trend
 
 MOST_EVENTS = 30        # of a record that are followed one by one
 SKIPPED = 5             # events of a simulation before it has settled
@@ -34,7 +34,7 @@ class Target:
     values: np.ndarray
     noise: np.ndarray                    #: standard deviations of the features, by noise or by scatter
     scale: np.ndarray                    #: what a relative error of the model is relative to
-    first_load: float                    #: end of the first loading in the record [T]; 0: it has none
+    first_load: float                    #: length of the first loading in the record [T]; 0: it has none
     near: float                          #: half width of the window around a drop [T]
     rig: float                           #: relative error of the slope of the loading that the rig's own numbers have
     wander: np.ndarray                   #: noise that lasts from sample to sample; empty where samples vary by themselves
@@ -48,7 +48,7 @@ class Target:
     def with_noise(self, time: np.ndarray, force: np.ndarray, rng: np.random.Generator, number: int) -> Iterator[np.ndarray]:
         """A force like the record's, again and again with other noise like the record's; where a drift was taken out of the
         record, without what would have been taken for one here."""
-        falls = self._falls(time, force) if self.analysis.straightened else None
+        falls = self.falls(time, force) if self.analysis.straightened else None
         for _ in range(number):
             noise = self.draw_noise(rng, force.size)
             if falls is not None:
@@ -73,14 +73,14 @@ class Target:
 
     def of_samples(self, time: np.ndarray, force: np.ndarray) -> np.ndarray | None:
         """The same of samples like the record's."""
-        falls = self._falls(time, force)
+        falls = self.falls(time, force)
         if falls is None:
             return None
         if self.analysis.scattered:
             return medians(time, force, falls)[0]
         return self._repeating(time, force, falls)
 
-    def _falls(self, time: np.ndarray, force: np.ndarray) -> Falls | None:
+    def falls(self, time: np.ndarray, force: np.ndarray) -> Falls | None:
         """The events of samples that are compared; None where there are too few."""
         falls = find_falls(time, smooth(force, self.analysis.window), self.analysis.threshold)
         if len(falls) < self.events:
@@ -90,18 +90,18 @@ class Target:
     def _repeating(self, time: np.ndarray, force: np.ndarray, falls: Falls) -> np.ndarray:
         middle = falls.middle
         cycles = falls.part(slice(1, None)) if self.analysis.from_rest else falls
-        start = 0.0 if self.analysis.from_rest else middle[0]
-        times = np.interp(_time_places(len(middle), self.analysis.from_rest), np.arange(len(middle)), middle) - start
+        # Since the first event: a record may begin some time before or after its drive does.
+        times = np.interp(_time_places(len(middle)), np.arange(len(middle)), middle) - middle[0]
         parts = [times, *_mean_cycle(time, force, cycles.middle, self.near)]
         if self.first_load > 0.0:
-            parts.append(_loading(time, force, self.first_load))
+            edges = middle[0] - self.first_load * np.linspace(1.0, 0.03, LOADING_BINS + 1)
+            parts.append(means_between(time, force, edges))
         return np.concatenate(parts)
 
 
-def _time_places(events: int, from_rest: bool) -> np.ndarray:
-    """Events whose times are compared: all of a few, evenly spread ones of many; the first is the origin or one of them."""
-    first = 0 if from_rest else 1
-    return np.linspace(first, events - 1, min(TIMES, events - first))
+def _time_places(events: int) -> np.ndarray:
+    """Events whose times are compared: all of a few, evenly spread ones of many; the first is the origin."""
+    return np.linspace(1, events - 1, min(TIMES, events - 1))
 
 
 def _mean_cycle(time: np.ndarray, force: np.ndarray, middle: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
@@ -110,13 +110,6 @@ def _mean_cycle(time: np.ndarray, force: np.ndarray, middle: np.ndarray, near: f
     around = np.interp(whole[:, None] + near * NEAR, time, force).mean(axis=0)
     between = middle[:-1, None] + np.diff(middle)[:, None] * BETWEEN
     return around, np.interp(between, time, force).mean(axis=0)
-
-
-def _loading(time: np.ndarray, force: np.ndarray, end: float) -> np.ndarray:
-    """Mean force in equal bins of the first loading."""
-    edges = np.searchsorted(time, np.linspace(0.0, end, LOADING_BINS + 1))
-    total = np.concatenate([[0.0], np.cumsum(force)])
-    return (total[edges[1:]] - total[edges[:-1]]) / np.maximum(1, np.diff(edges))
 
 
 MEDIANS = ('period', 'drop', 'peak', 'slope')
@@ -157,7 +150,7 @@ def make_target(analysis: Analysis, rig: float = RIG) -> Target:
         return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, unknown), np.abs(values), 0.0, near, rig,
                       np.empty(0))
     events = min(len(falls), MOST_EVENTS)
-    first_load = 0.97 * falls.middle[0] if analysis.from_rest else 0.0
+    first_load = falls.middle[0] if analysis.from_rest else 0.0
     blank = Target(analysis, events + (0 if analysis.from_rest else SKIPPED), (), np.empty(0), np.empty(0), np.empty(0),
                    first_load, near, rig, _wander(analysis))
     values = blank._repeating(analysis.time, analysis.force, falls.part(slice(None, events)))
@@ -201,7 +194,7 @@ def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str,
     if target.analysis.uneven and not lasting.size:   # straight lines between samples
         lasting = target.analysis.white_noise(np.random.default_rng(0), target.analysis.time.size)
     noise = float(np.std(lasting)) if lasting.size else target.analysis.noise
-    times = len(_time_places(events, target.analysis.from_rest))
+    times = len(_time_places(events))
     around = values[times:times + NEAR.size]
     amplitude = np.ptp(around)
     slope = np.abs(np.gradient(around, target.near * NEAR))

@@ -37,10 +37,8 @@ def draw(fit: Fit) -> matplotlib.figure.Figure:
 
 
 def _together(axes, analysis, measured, computed) -> None:
-    """Both forces against time; without a common start the first events shown coincide."""
-    shift = 0.0
-    if not analysis.from_rest and len(computed[2]):
-        shift = measured[2].middle[0] - computed[2].middle[0]
+    """Both forces against time; the first events shown coincide."""
+    shift = measured[2].middle[0] - computed[2].middle[0] if len(computed[2]) else 0.0
     end = measured[2].middle[min(EVENTS_SHOWN, len(measured[2]) - 1)] + 0.5 * analysis.period
     for (time, force, _), moved, colour, label in ((measured, 0.0, '0.6', 'measured'), (computed, shift, 'C3', 'computed')):
         shown = (time + moved >= 0.0) & (time + moved <= end)

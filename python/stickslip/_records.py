@@ -24,7 +24,7 @@ class Record:
     time: when the force was measured, increasing [T]; force: there, positive when the spring pulls the way the drive
     goes [F]; settings: what of the model's input differs for this record, as groups of keys, for instance
     ``{'drive': {'velocity': 2.0}, 'slider': {'stiffness': 5.0}}``; name: of messages and pictures; from_rest: does the
-    record begin with a slack spring and a block at rest? None: found out.
+    record begin in the first loading of a slack spring, of a block that was at rest, or shortly before? None: found out.
     """
 
     time: np.ndarray
@@ -160,6 +160,12 @@ def smooth(force: np.ndarray, samples: int) -> np.ndarray:
     return (total[2 * half + 1:] - total[:-2 * half - 1]) / (2 * half + 1)
 
 
+def means_between(time: np.ndarray, force: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Mean force between one time and the next; before the first sample there is none."""
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
+    return np.diff(np.interp(edges, time, impulse)) / np.diff(edges)
+
+
 def average(values: np.ndarray, samples: int) -> np.ndarray:
     """Means of so many samples each; what is left over at the end is dropped."""
     return values[:values.size // samples * samples].reshape(-1, samples).mean(axis=1)
@@ -268,7 +274,7 @@ class Analysis:
 LEAST_EVENTS = 5
 FINER = 4               # rows of a simulation in a step of a record whose samples lie between rows
 SAMPLES_A_PERIOD = 200
-SAMPLES_A_FALL = 10
+SAMPLES_A_FALL = 30
 
 
 def analyse(record: Record, sense: float = 1.0, settled: bool = False) -> Analysis:
@@ -397,7 +403,7 @@ def _refuse_without_events(record: Record, count: int, noise: float, range_: flo
         record.refuse(f'no sustained stick-slip, or {count} slip events, which are too few; at least {LEAST_EVENTS} are '
                       'needed: take a longer record, or another part of it (start, end)')
     record.refuse('no sustained stick-slip: the noise, or whatever changes from sample to sample, is as large as the falls '
-                  f'of the force (noise {noise:.3g}, range of the force {range_:.3g})')
+                  f'of the force (noise {noise:.3g}, range of the force {range_:.3g}). Velocity steps and holds are for fit_rate_and_state')
 
 
 def _without_spikes(record: Record, force: np.ndarray, noise: float) -> tuple[np.ndarray, list[str]]:
@@ -507,7 +513,5 @@ def straight_trend(time: np.ndarray, force: np.ndarray, falls: Falls, from_rest:
     """The straight line on which the mean forces of the cycles lie, which have far less noise than peaks. The force of a spring
     that is slack at the start is right there, that of others in the middle."""
     edges = falls.middle[1:]
-    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(time))])
-    means = np.diff(np.interp(edges, time, impulse)) / np.diff(edges)
-    slope, _ = np.polyfit(0.5 * (edges[1:] + edges[:-1]), means, 1)
+    slope, _ = np.polyfit(0.5 * (edges[1:] + edges[:-1]), means_between(time, force, edges), 1)
     return slope * (time - (0.0 if from_rest else 0.5 * (falls.onset[1] + falls.onset[-1])))

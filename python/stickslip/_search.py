@@ -124,12 +124,14 @@ class Problem:
     def expected_end(self, target: Target, events: int) -> float:
         """Time by which a simulation like the record shows so many events [T]."""
         falls = target.analysis.falls
+        slow = target.analysis.period / target.analysis.drop   # time for the drive to load the spring by a unit of force
         if target.analysis.from_rest:
+            before = max(0.0, target.analysis.force[0]) * slow   # that the record lacks
             if events <= len(falls):
-                return 1.02 * falls.middle[events - 1] + 0.5 * target.analysis.period
-            return falls.middle[-1] + (events - len(falls) + 1.5) * target.analysis.period
+                return before + 1.02 * falls.middle[events - 1] + 0.5 * target.analysis.period
+            return before + falls.middle[-1] + (events - len(falls) + 1.5) * target.analysis.period
         # From a slack spring: as long as the drive needs to load it.
-        load = float(np.median(falls.peak)) * target.analysis.period / target.analysis.drop
+        load = float(np.median(falls.peak)) * slow
         return 1.2 * load + (events + 1) * 1.1 * target.analysis.period
 
     def features(self, candidate: np.ndarray, target: Target) -> np.ndarray | None:

@@ -182,12 +182,14 @@ class Fit(unittest.TestCase):
         self.assertLess(max(found.misfit['record'].values()), 2.5)
 
     def test_errors_are_those_of_samples_at_even_and_uneven_times_and_of_noise_that_lasts(self):
-        """Of 8 records of each kind: the root mean square of errors in standard deviations is about 1."""
+        """The root mean square of errors in standard deviations is about 1: of 3 records of each kind as far as so few tell, which leave
+        one in a thousand above the bounds; of 40, and more kinds: bench/fit_errors.py."""
         fine, clean = synthetic(noise=0.0, output={'every': 0.001})
         close = {**SETTINGS, 'starts': 1, 'bounds': {'mu_s': (0.35, 0.45), 'mu_k': (0.17, 0.24)}}
+        whole = []
         for kind in ('even', 'uneven', 'lasting', 'drift'):
             off = []
-            for seed in range(8):
+            for seed in range(3):
                 draw = np.random.default_rng(seed)
                 t = np.sort(draw.uniform(0.0, 17.0, 1700)) if kind == 'uneven' else np.arange(0.0, 17.0, 0.01)
                 white = draw.normal(size=t.size + 60)
@@ -196,8 +198,10 @@ class Fit(unittest.TestCase):
                 found = stickslip.fit(stickslip.Record(t, force), INPUT, **close)
                 off += [np.log(found.values[name] / true) / np.log(np.divide(*found.intervals[name][::-1])) * 2 * 1.96
                         for name, true in TRUE.items()]
-            self.assertLess(np.sqrt(np.mean(np.square(off))), 1.4, kind)
-            self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.5 if kind == 'drift' else 0.7, kind)
+            self.assertLess(np.sqrt(np.mean(np.square(off))), 2.3, kind)
+            whole += off
+        self.assertLess(np.sqrt(np.mean(np.square(whole))), 1.6)
+        self.assertGreater(np.sqrt(np.mean(np.square(whole))), 0.45)
 
     def test_noise_that_lasts_has_its_part_in_mean_cycles(self):
         """Pieces of it must not cancel out over the cycles, as the whole does."""
@@ -415,6 +419,27 @@ class Records(unittest.TestCase):
         found, clean = (analyse(stickslip.Record(self.time, values)) for values in (force, self.force))
         self.assertRegex(found.warnings[0], '8 samples stand out')
         np.testing.assert_allclose(found.falls.middle, clean.falls.middle, atol=0.02)
+
+    def test_a_record_may_begin_anywhere_in_the_first_loading_or_before(self):
+        """Nobody knows the start of a loading to a small part of a sample: what is compared is counted from the first event. Times
+        since the start made constants wrong by thirteen standard deviations where the first 0.8 % of the loading were missing."""
+        fine, clean = synthetic(noise=0.0, output={'every': 0.001})
+        draw = np.random.default_rng(3)
+        for begin in (-0.2, 0.0, 0.03, 0.3, 0.5):
+            moments = np.arange(begin, 17.0, 0.01)
+            force = np.interp(moments, fine, clean) + 0.01 * clean.max() * draw.normal(size=moments.size)
+            target = make_target(analyse(stickslip.Record(moments, force)))
+            self.assertGreater(target.first_load, 2.0)
+            apart = (target.of_simulation(fine, clean) - target.values) / target.errors()
+            self.assertLess(np.sqrt(np.mean(apart**2)), 1.5, begin)
+
+    def test_features_do_not_depend_on_where_samples_fall(self):
+        """Falls of ten samples made them jitter by more than a step of the differences did, and slopes wrong, error bars, too."""
+        fine, clean = synthetic(noise=0.0, output={'every': 0.001})
+        force = clean + 0.01 * clean.max() * np.random.default_rng(3).normal(size=clean.size)
+        target = make_target(analyse(stickslip.Record(fine, force)))
+        found = np.array([target.of_simulation(fine[k:] - fine[k], clean[k:]) for k in range(8)]) / target.errors()
+        self.assertLess(np.std(found, axis=0).max(), 0.05)
 
     def test_a_record_that_begins_at_the_foot_of_a_cycle_does_not_begin_at_rest(self):
         """Where the force falls to less than a quarter of its peak."""
