@@ -15,7 +15,7 @@ import numpy as np
 from . import _namelist
 from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians, rises
 from ._namelist import InputError
-from ._records import LEAST_EVENTS, Analysis, Record, analyse
+from ._records import LEAST_EVENTS, Analysis, Record, analyse, means_between
 from ._run import check_runs, spring_force
 from ._search import (
     Constant,
@@ -386,19 +386,53 @@ def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, mis
                     by_noise: np.ndarray) -> list[str]:
     """Does the model explain the record? misfit, by_noise: of this record's features, in standard deviations."""
     name, whole = target.analysis.record.name, np.sqrt(np.mean(misfit**2))
+    noise = np.sum(by_noise**2, axis=0)
+    if not misfit @ misfit > noise.mean() + UNEXPLAINED * noise.std():
+        return []
+    drift = _drift_remarks(problem, candidate, target)
     if whole > 5.0:
         told = compare(problem, candidate, target.analysis)
         return [f'{name}: the model does not follow this record (misfit {whole:.2g} standard deviations): its peaks are '
                 f'{told["peak"]["measured"]:.4g} and rise by {told["slope"]["measured"]:.4g} per unit of time, the model\'s '
-                f'{told["peak"]["computed"]:.4g} and {told["slope"]["computed"]:.4g}']
+                f'{told["peak"]["computed"]:.4g} and {told["slope"]["computed"]:.4g}', *drift]
     names = np.array(target.names)
     parts = {feature: np.sqrt(np.mean(misfit[names == feature]**2)) for feature in dict.fromkeys(target.names)}
     worst = max(parts, key=lambda feature: parts[feature])
-    noise = np.sum(by_noise**2, axis=0)
-    if misfit @ misfit > noise.mean() + UNEXPLAINED * noise.std():
-        return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '
-                'does not follow all of this record, or the search has not found the best constants; the intervals are the wider for it']
-    return []
+    return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '
+            'does not follow all of this record, or the search has not found the best constants; the intervals are the wider for it',
+            *drift]
+
+
+def _drift_remarks(problem: Problem, candidate: np.ndarray, target: Target) -> list[str]:
+    """Do the periods of a record that the model does not follow become longer or shorter, beside the model's?"""
+    analysis, events = target.analysis, target.events
+    result = problem.run(candidate, target, problem.expected_end(target, events))
+    if analysis.scattered or result is None:
+        return []
+    time, force = analysis.like(*result)
+    computed = target.falls(time, force)
+    if computed is None:
+        return []
+    measured = analysis.falls.part(slice(None, len(computed)))
+    period, error = _trend(np.diff(measured.middle), np.diff(computed.middle), np.sqrt(2.0) * target.noise[0] / analysis.period)
+    level, _ = _trend(means_between(analysis.time, analysis.force, measured.middle), means_between(time, force, computed.middle))
+    if abs(period) < max(5.0 * error, 0.003):
+        return []
+    told = (f'{analysis.record.name}: from its first to its last events the period changes by {period:+.1%}, beside the model\'s, '
+            f'and the mean force by {level:+.1%}: ')
+    if analysis.straightened or abs(level) > 0.5 * abs(period):
+        return [told + 'the surface, the normal traction or the load cell changes with time. Take a part of the record (start, end), or give '
+                       'the normal traction as it was measured (&drive file)']
+    return [told + f'the velocity of the drive {"falls" if period > 0.0 else "rises"}. Give the drive as it was measured (&drive file), '
+                   'with a record from its start, or take a part of the record (start, end)']
+
+
+def _trend(measured: np.ndarray, computed: np.ndarray, least: float = 0.0) -> tuple[float, float]:
+    """Change of a ratio from the first event to the last, on a straight line, and its error. least: relative error of one."""
+    apart, place = np.log(measured / computed), np.linspace(-0.5, 0.5, measured.size)
+    slope = place @ apart / (place @ place)
+    left = apart - apart.mean() - slope * place
+    return float(slope), float(max(np.sqrt(left @ left / (apart.size - 2)), least) / np.sqrt(place @ place))
 
 
 def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) -> None:

@@ -25,11 +25,20 @@ class InputError(ValueError):
 
 
 def merge(base: Settings, other: Settings) -> Settings:
-    """A copy of `base` with the keys of `other` in place of its own."""
+    """A copy of `base` with the keys of `other` in place of its own; a file of the drive takes the place of its lists, too, and lists
+    that of a file."""
     merged = copy.deepcopy(base)
     for group, keys in groups_of(other).items():
-        merged.setdefault(group, {}).update(keys)
+        own = merged.setdefault(group, {})
+        if group == 'drive' and ('file' in keys or 'velocity' in keys):
+            for key in [key for key in own if (key in DRIVE_LISTS) == ('file' in keys) and not key.startswith(OSCILLATION)]:
+                del own[key]
+        own.update(keys)
     return merged
+
+
+DRIVE_LISTS = ('velocity', 'duration', 'normal', 'normal_change')
+OSCILLATION = ('normal_amplitude', 'normal_frequency', 'normal_phase')   # beside lists and beside a file
 
 
 def groups_of(source: Source) -> Settings:

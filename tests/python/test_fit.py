@@ -14,7 +14,7 @@ import unittest
 import numpy as np
 
 import stickslip
-from stickslip import _fit_command
+from stickslip import _fit_command, _namelist
 from stickslip._features import make_target
 from stickslip._records import analyse, find_falls
 
@@ -163,6 +163,26 @@ class Fit(unittest.TestCase):
                               bounds={**BOUNDS, 'd_c': (0.05, 5.0)})
         self.assertRegex(' '.join(found.warnings), 'record: (noise does not explain what is left over|the model does not follow)')
         self.assertEqual(self.fit.warnings, [])
+
+    def test_a_drive_whose_velocity_drifts_is_told_and_may_be_given(self):
+        way, close = np.linspace(-0.5, 0.5, 51), {**SETTINGS, 'starts': 1, 'bounds': {'mu_s': (0.35, 0.45), 'mu_k': (0.17, 0.24)}}
+        for velocity, normal, words in ((0.03, 0.0, r'period changes by -[12]\.\d%.*: the velocity of the drive rises'),
+                                        (0.0, 0.05, 'the surface, the normal traction or the load cell changes with time')):
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder, 'drive.csv')
+                np.savetxt(path, np.column_stack([np.linspace(0.0, 17.0, 51), 1.0 + velocity * way, 0.01 + 0.01 * normal * way]),
+                           delimiter=',', header='time,velocity,normal', comments='')
+                drive = {'drive': {'file': str(path)}}
+                record = stickslip.Record(*synthetic(**drive))
+                self.assertRegex(stickslip.fit(record, INPUT, **close).warnings[-1], words)
+                self.assertEqual(stickslip.fit(dataclasses.replace(record, settings=drive), INPUT, **close).warnings, [])
+
+    def test_a_record_s_drive_takes_the_place_of_the_input_s(self):
+        """A table and lists do not go together."""
+        lists, table = {'velocity': 1.0, 'duration': 2.0}, {'file': 'rig.csv', 'time_factor': 1e-3}
+        for base, other in ((lists, table), (table, lists), (table, {'velocity': 2.0})):
+            self.assertEqual(_namelist.merge({'drive': {**base, 'normal_phase': 0.1}}, {'drive': other}), {'drive': {**other, 'normal_phase': 0.1}})
+        self.assertEqual(_namelist.merge({'drive': lists}, {'drive': {'velocity': 2.0}}), {'drive': {**lists, 'velocity': 2.0}})
 
     def test_a_search_that_is_stopped_early_gives_its_best(self):
         found = stickslip.fit(self.record, INPUT, **SETTINGS, most_evaluations=12)
