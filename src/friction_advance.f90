@@ -4,13 +4,18 @@
 !> What every update passes through is in this file, so that a compiler that works file by file can
 !> inline it, too.
 submodule(friction_mod) friction_advance
+    use friction_anisotropy, only : sliding_way, tangential_trial
     use friction_axes, only : contact_axes, is_unit_vector, turn_axes
-    use friction_contact, only : contact_constants, contact_motion, contact_point, contact_update, &
-        point_open, point_slip, point_stick, point_virgin, touches
+    use friction_contact, only : answer_of_slip, answer_of_stick, contact_constants, &
+        contact_motion, contact_point, contact_update, follow_trial, least, near_underflow, &
+        point_open, point_slip, point_stick, point_virgin, tangential_answer, touches, verge, &
+        write_answer
     use friction_continuous, only : contact_rates, point_rates
-    use friction_law, only : law
-    use friction_law_choice, only : choose_law, first_own_prop, law_storage, prop_alpha_n, &
-        prop_alpha_t, surface_options
+    use friction_kinds, only : largest
+    use friction_law, only : law, law_state, sliding
+    use friction_law_choice, only : choose_law, first_own_prop, law_storage, law_subloading, &
+        prop_alpha_n, prop_alpha_t, spring_constants, surface_options
+    use friction_subloading_law, only : subloading_law
     implicit none
 
 contains
@@ -26,29 +31,48 @@ contains
     end procedure friction_update
 
     module procedure update_arrays
-        type(contact_motion) :: motion
-        real(wp) :: plane_traction(3), plane_tangent(3, 3)
+        real(wp) :: space(3), plane_traction(3), plane_tangent(3, 3)
 
         status = friction_bad_size
         if (sizes%ndir < 2 .or. sizes%ndir > 3) return
-        motion%du(1) = du(1)
-        motion%du(2) = du(2)
-        motion%dt = dtime
-        motion%pressure_given = .false.
-        motion%pressure = 0.0_wp
-        motion%blur = 0.0_wp
-        motion%blur_start = 0.0_wp
         if (sizes%ndir == 3) then
-            motion%du(3) = du(3)
-            call advance(motion, sizes, props, statev, traction, tangent, status)
+            call advance_in_space(du, dtime, sizes, props, statev, traction, tangent, status)
         else
-            motion%du(3) = 0.0_wp
-            call advance(motion, sizes, props, statev, plane_traction, plane_tangent, status)
+            space(1) = du(1)
+            space(2) = du(2)
+            space(3) = 0.0_wp
+            call advance_in_space(space, dtime, sizes, props, statev, plane_traction, &
+                plane_tangent, status)
             if (status < 0) return
             traction = plane_traction(1:2)
             tangent = plane_tangent(1:2, 1:2)
         end if
     end procedure update_arrays
+
+    !> An update with three components, of which the last is zero where there are two.
+    pure subroutine advance_in_space(du, dt, sizes, props, statev, traction, tangent, status)
+        real(wp), intent(in) :: du(3), dt
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: props(sizes%nprops)
+        real(wp), intent(inout) :: statev(sizes%nstatv)
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)
+        integer, intent(out) :: status
+        type(contact_motion) :: motion
+        logical :: done
+
+        call advance_plainly(du, dt, sizes, props, statev, traction, tangent, done)
+        status = friction_ok
+        if (done) return
+        motion%du(1) = du(1)
+        motion%du(2) = du(2)
+        motion%du(3) = du(3)
+        motion%dt = dt
+        motion%pressure_given = .false.
+        motion%pressure = 0.0_wp
+        motion%blur = 0.0_wp
+        motion%blur_start = 0.0_wp
+        call advance(motion, sizes, props, statev, traction, tangent, status)
+    end subroutine advance_in_space
 
     module procedure friction_update_frame
         real(wp) :: axes(3, 3), state(statev_size), contact_traction(3), contact_tangent(3, 3)
@@ -194,6 +218,133 @@ contains
         rates(statev_dissipation) = by_time%dissipation
     end procedure friction_rates
 
+    !> The update that hosts ask for most, by itself: the subloading law without options, in a
+    !> contact that was closed and stays so. Nothing is chosen while it runs, so that a compiler
+    !> inlines all of it (docs/performance_notes.md). Whatever is not plain, and every fault, is
+    !> left to `advance`, which does the same for any law.
+    pure subroutine advance_plainly(du, dt, sizes, props, statev, traction, tangent, done)
+        real(wp), intent(in) :: du(3), dt
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: props(sizes%nprops)
+        real(wp), intent(inout) :: statev(sizes%nstatv)
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)
+        logical, intent(out) :: done   !! false: nothing is touched
+        type(subloading_law) :: surface
+        type(contact_point) :: old, new
+        type(law_state) :: start
+        type(tangential_trial) :: trial
+        type(tangential_answer) :: answer
+        type(sliding) :: slid
+        type(sliding_way) :: way
+        real(wp) :: strength, load, pull(2)
+
+        call read_plainly(sizes, du, dt, props, statev, surface, old, done)
+        if (.not. done) return
+        done = .false.
+        new%u_n = old%u_n + du(1)
+        trial%pressure = -props(prop_alpha_n) * new%u_n
+        trial%stiffness = props(prop_alpha_t)
+        trial%q(1) = old%u_et(1) + du(2)
+        trial%q(2) = old%u_et(2) + du(3)
+        trial%distance = sqrt(trial%q(1)**2 + trial%q(2)**2)
+        load = trial%stiffness * trial%distance
+        if (max(abs(new%u_n), trial%pressure, trial%distance, load) > largest &
+            .or. trial%pressure <= least .or. trial%distance <= near_underflow) return
+        start = old%inner
+        call surface%rest(load, trial%pressure, dt, start, new%inner, strength)
+        if (load <= strength * (1.0_wp + verge)) then
+            call answer_of_stick(trial, old, new, answer)
+        else
+            call surface%solve(load, trial%stiffness, trial%pressure, dt, start, slid, done)
+            if (.not. done) return
+            way%stiffness = trial%stiffness
+            call follow_trial(trial%q, 1.0_wp / trial%distance, slid%resistance, way)
+            pull(1) = slid%d_slip * way%along(1)
+            pull(2) = slid%d_slip * way%along(2)
+            new%dissipation = min(old%dissipation + slid%resistance * slid%slip, largest)
+            call answer_of_slip(trial%stiffness, slid, way, pull, slid%d_pressure, old, new, answer)
+            answer%by_pressure = -props(prop_alpha_n) * answer%by_pressure
+        end if
+        call write_answer(props(prop_alpha_n), trial%pressure, answer, traction, tangent)
+        call pack_state(new, statev)
+        done = .true.
+    end subroutine advance_plainly
+
+    !> Law and state of such an update, once all its numbers are known to be plain. Conditions are
+    !> put together: a compiler takes what comes after many returns for rare, and inlines nothing
+    !> there.
+    pure subroutine read_plainly(sizes, du, dt, props, statev, surface, point, plain)
+        type(array_sizes), intent(in) :: sizes
+        real(wp), intent(in) :: du(3), dt
+        real(wp), intent(in) :: props(sizes%nprops), statev(sizes%nstatv)
+        type(subloading_law), intent(inout) :: surface   !! out
+        type(contact_point), intent(inout) :: point      !! out
+        logical, intent(out) :: plain   !! false: the other two are undefined
+        integer, parameter :: usual_size = 8     !! of `props`, without what has defaults
+        integer, parameter :: first_choice = 10   !! how the law is to be taken, and options
+        real(wp), parameter :: plain_law = law_subloading
+        integer(int64) :: fits
+        integer :: n_own, status
+
+        plain = min(sizes%nprops, sizes%nstatv) >= usual_size
+        if (plain) plain = same(props(prop_law), plain_law)
+        if (plain .and. sizes%nprops >= first_choice) plain = &
+            changes_nothing(sizes%nprops - first_choice + 1, props(first_choice:))
+        if (.not. plain) return
+        ! One by one: the caller has only just stored them one by one, and a processor that loads
+        ! them in pairs has to wait.
+        fits = iand(iand(excess(du(1)), excess(du(2))), iand(excess(du(3)), excess(dt)))
+        plain = fits < 0 .and. all_usable(usual_size, props) .and. all_usable(statev_size, statev)
+        if (plain .and. sizes%nprops > usual_size) plain = all_usable(sizes%nprops - usual_size, &
+            props(usual_size + 1:))
+        if (.not. plain) return
+
+        call surface%read(min(sizes%nprops, first_choice - 1) - first_own_prop + 1, &
+            props(first_own_prop:), n_own, status)
+        surface%cohesion = 0.0_wp
+        point%u_n = statev(statev_u_n)
+        point%u_et(1) = statev(statev_u_et)
+        point%u_et(2) = 0.0_wp
+        if (sizes%ndir > 2) point%u_et(2) = statev(statev_u_et + 1)
+        point%inner%mu = statev(statev_mu)
+        point%inner%r = statev(statev_r)
+        point%slip = statev(statev_slip)
+        point%dissipation = statev(statev_dissipation)
+        plain = status == friction_ok
+        if (plain) plain = surface%admits(point%inner) &
+            .and. props(prop_alpha_n) >= spring_constants(1)%lower &
+            .and. props(prop_alpha_t) >= spring_constants(2)%lower &
+            .and. (abs(statev(statev_status) - point_stick) <= 0.0_wp &
+            .or. abs(statev(statev_status) - point_slip) <= 0.0_wp) .and. point%u_n <= 0.0_wp &
+            .and. min(point%slip, point%dissipation, dt) >= 0.0_wp
+    end subroutine read_plainly
+
+    !> Choices and options that are there, but leave the subloading law as it is: all of them 0, a
+    !> ratio of coefficients may be 1. By their bits, so that the question costs next to nothing
+    !> where the answer is no.
+    pure function changes_nothing(n, constants) result(plain)
+        integer, intent(in) :: n               !! how many are given
+        real(wp), intent(in) :: constants(n)   !! may be anything
+        logical :: plain
+        integer, parameter :: ratio = 4        !! place among them
+        integer :: i
+
+        plain = .false.
+        do i = n, 1, -1   ! the last is the one that its user wants
+            if (.not. (same(constants(i), 0.0_wp) .or. (i == ratio &
+                .and. same(constants(i), 1.0_wp)))) return
+        end do
+        plain = .true.
+    end function changes_nothing
+
+    !> The same bits?
+    pure function same(x, y)
+        real(wp), intent(in) :: x, y
+        logical :: same
+
+        same = transfer(x, 0_int64) == transfer(y, 0_int64)
+    end function same
+
     !> Validates the numbers, chooses the law, and updates.
     pure subroutine advance(motion, sizes, props, statev, traction, tangent, status)
         type(contact_motion), intent(in) :: motion
@@ -206,16 +357,12 @@ contains
         class(law), pointer :: chosen, surface
         type(surface_options) :: options
         type(contact_point) :: old, new
-        integer(int64) :: seen
 
         status = friction_bad_size
         if (sizes%nprops < first_own_prop .or. sizes%nstatv < statev_size) return
         status = friction_bad_increment
-        ! One by one: the caller has only just stored them one by one, and a processor that loads
-        ! them in pairs has to wait.
-        seen = ior(ior(ior(oversize(motion%du(1)), oversize(motion%du(2))), &
-            ior(oversize(motion%du(3)), oversize(motion%dt))), oversize(motion%pressure))
-        if (btest(seen, 62)) return
+        if (iand(iand(iand(excess(motion%du(1)), excess(motion%du(2))), iand(excess(motion%du(3)), &
+            excess(motion%dt))), excess(motion%pressure)) >= 0) return
         if (motion%dt < 0.0_wp) return
         status = friction_bad_property
         if (.not. all_usable(sizes%nprops, props)) return
@@ -343,25 +490,23 @@ contains
         integer(int64) :: seen
         integer :: i
 
-        seen = 0
+        seen = -1
         do i = 1, n
-            seen = ior(seen, oversize(x(i)))
+            seen = iand(seen, excess(x(i)))
         end do
-        usable = .not. btest(seen, 62)
+        usable = seen < 0
     end function all_usable
 
-    !> A bit pattern whose bit 62 tells a number too large, infinite or NaN.
+    !> A number that is negative unless another one is too large, infinite or NaN.
     !>
-    !> Reads the exponent as an integer: silent where NaN raises a floating-point exception, and
-    !> right even where the compiler was told that there are no NaNs. An exponent that is too large
-    !> carries into that bit, and nothing else does.
-    pure function oversize(x) result(bits)
+    !> Takes its bits, without the sign, for an integer: silent where NaN raises a floating-point
+    !> exception, and right even where the compiler was told that there are no NaNs.
+    pure function excess(x) result(difference)
         real(wp), intent(in) :: x
-        integer(int64) :: bits
-        integer(int64), parameter :: exponent_bits = shiftl(2047_int64, 51)
-        integer(int64), parameter :: carry = shiftl(2048_int64 - (1023 + 333), 51)
+        integer(int64) :: difference
+        integer(int64), parameter :: too_large = shiftl(1023_int64 + 333, 52)   !! 2**333
 
-        bits = iand(shiftr(transfer(x, bits), 1), exponent_bits) + carry
-    end function oversize
+        difference = iand(transfer(x, difference), huge(difference)) - too_large
+    end function excess
 
 end submodule friction_advance

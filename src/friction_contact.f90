@@ -11,14 +11,18 @@ module friction_contact
     private
 
     public :: contact_constants, contact_motion, contact_point, contact_update, touches
+    public :: answer_of_slip, answer_of_stick, follow_trial, tangential_answer, write_answer
 
     !> A trial sticks if it is above the strength by no more than this share, which is round-off
     !> (docs/theory.md, section 3).
-    real(wp), parameter :: verge = 32.0_wp * epsilon(verge)
+    real(wp), parameter, public :: verge = 32.0_wp * epsilon(verge)
 
     !> Pressures [F/L^2] and displacements [L] below this are none: their quotients would leave the
     !> range of the arithmetic.
-    real(wp), parameter :: least = 2.0_wp**(-960)
+    real(wp), parameter, public :: least = 2.0_wp**(-960)
+
+    !> The square of a length above this does not underflow [L].
+    real(wp), parameter, public :: near_underflow = 2.0_wp**(-450)
 
     integer, parameter, public :: point_virgin = 0   !! nothing has happened yet
     integer, parameter, public :: point_stick = 1    !! closed, tangentially elastic
@@ -78,7 +82,7 @@ contains
         integer, intent(out) :: status   !! ok, snap back, bad increment, or no convergence
         type(tangential_trial) :: trial
         type(tangential_answer) :: answer
-        real(wp) :: loaded
+        real(wp) :: loaded, normal
         logical :: closed, simple
 
         call find_normal(surface, constants, motion, old, new, trial%pressure, closed, status)
@@ -104,11 +108,22 @@ contains
                 answer%tau, new)
             if (loaded < 1.0_wp) call touch_down(motion%du, old%u_n, loaded, answer)
         end if
-        traction(1) = -trial%pressure
+        normal = constants%normal
+        if (motion%pressure_given) normal = -1.0_wp
+        call write_answer(normal, trial%pressure, answer, traction, tangent)
+    end subroutine contact_update
+
+    !> What a closed contact carries, component by component.
+    pure subroutine write_answer(normal, pressure, answer, traction, tangent)
+        real(wp), intent(in) :: normal     !! derivative of the normal traction by what moves it
+        real(wp), intent(in) :: pressure   !! [F/L^2]
+        type(tangential_answer), intent(in) :: answer
+        real(wp), intent(inout) :: traction(3), tangent(3, 3)   !! out, as of `contact_update`
+
+        traction(1) = -pressure
         traction(2) = answer%tau(1)
         traction(3) = answer%tau(2)
-        tangent(1, 1) = constants%normal
-        if (motion%pressure_given) tangent(1, 1) = -1.0_wp
+        tangent(1, 1) = normal
         tangent(1, 2) = 0.0_wp
         tangent(1, 3) = 0.0_wp
         tangent(2, 1) = answer%by_pressure(1)
@@ -117,7 +132,7 @@ contains
         tangent(3, 2) = answer%by_q(2, 1)
         tangent(2, 3) = answer%by_q(1, 2)
         tangent(3, 3) = answer%by_q(2, 2)
-    end subroutine contact_update
+    end subroutine write_answer
 
     !> Normal displacement and pressure at the end of the increment, and whether the contact is
     !> closed then.
@@ -264,7 +279,6 @@ contains
         type(contact_point), intent(inout) :: new
         type(tangential_answer), intent(out) :: answer
         integer, intent(out) :: status
-        real(wp), parameter :: near_underflow = 2.0_wp**(-450)   !! of a length, in its square [L]
         type(reloading) :: reload
         real(wp) :: strength, limit, blur, stiffness
 
@@ -290,18 +304,7 @@ contains
         if (blur > 0.0_wp) limit = limit + stiffness * blur + strength * relative_blur(surface, &
             motion%blur, new, trial%pressure)
         if (stiffness * trial%distance <= limit) then
-            new%phase = point_stick
-            new%u_et(1) = trial%q(1)
-            new%u_et(2) = trial%q(2)
-            new%slip = old%slip
-            new%dissipation = old%dissipation
-            answer%tau(1) = stiffness * trial%q(1)
-            answer%tau(2) = stiffness * trial%q(2)
-            answer%by_q(1, 1) = stiffness
-            answer%by_q(2, 1) = 0.0_wp
-            answer%by_q(1, 2) = 0.0_wp
-            answer%by_q(2, 2) = stiffness
-            answer%by_pressure = 0.0_wp
+            call answer_of_stick(trial, old, new, answer)
         else
             trial%dt = motion%dt
             trial%start = old%inner
@@ -311,6 +314,27 @@ contains
             call slip_update(surface, plane, trial, reload, old, new, answer, status)
         end if
     end subroutine tangential_update
+
+    !> Nothing slips: all of the motion strains the spring.
+    pure subroutine answer_of_stick(trial, old, new, answer)
+        type(tangential_trial), intent(in) :: trial
+        type(contact_point), intent(in) :: old
+        type(contact_point), intent(inout) :: new   !! out: all but normal displacement and `inner`
+        type(tangential_answer), intent(out) :: answer
+
+        new%phase = point_stick
+        new%u_et(1) = trial%q(1)
+        new%u_et(2) = trial%q(2)
+        new%slip = old%slip
+        new%dissipation = old%dissipation
+        answer%tau(1) = trial%stiffness * trial%q(1)
+        answer%tau(2) = trial%stiffness * trial%q(2)
+        answer%by_q(1, 1) = trial%stiffness
+        answer%by_q(2, 1) = 0.0_wp
+        answer%by_q(1, 2) = 0.0_wp
+        answer%by_q(2, 2) = trial%stiffness
+        answer%by_pressure = 0.0_wp
+    end subroutine answer_of_stick
 
     !> A trial that round-off alone holds above the cap is put just below it: so a surface which
     !> creeps under any traction creeps there, whatever the last bits say, as others stick.
@@ -369,7 +393,7 @@ contains
         integer, intent(out) :: status
         type(sliding) :: slid
         type(sliding_way) :: way
-        real(wp) :: mean, share, by_p, pull(2), start_rate
+        real(wp) :: mean, by_p, pull(2), start_rate
 
         if (plane%associated) then
             call slide_associated(surface, plane%squeeze, trial, slid, way, status)
@@ -393,29 +417,34 @@ contains
                 plane%squeeze * old%u_et(2)))
         end if
 
+        new%dissipation = min(old%dissipation + mean * slid%slip * way%work_ratio, largest)
+        call answer_of_slip(trial%stiffness, slid, way, pull, by_p, old, new, answer)
+    end subroutine slip_update
+
+    !> State and traction of a contact that has slid, and the derivatives (docs/theory.md, section
+    !> 4).
+    pure subroutine answer_of_slip(stiffness, slid, way, pull, by_p, old, new, answer)
+        real(wp), intent(in) :: stiffness   !! of the tangential spring [F/L^3]
+        type(sliding), intent(in) :: slid
+        type(sliding_way), intent(in) :: way
+        real(wp), intent(in) :: pull(2)     !! growth of the resistance with q [F/L^3]
+        real(wp), intent(in) :: by_p        !! and with the pressure [-]
+        type(contact_point), intent(in) :: old
+        type(contact_point), intent(inout) :: new   !! out: all but normal displacement and
+                                                    !! dissipation
+        type(tangential_answer), intent(out) :: answer
+        real(wp) :: share, coupling, response(2)
+
         new%phase = point_slip
         new%inner%mu = min(slid%state%mu, largest)
         new%inner%r = min(slid%state%r, largest)
-        share = 1.0_wp / trial%stiffness
+        share = 1.0_wp / stiffness
         new%u_et(1) = share * way%tau(1)
         new%u_et(2) = share * way%tau(2)
         new%slip = min(old%slip + slid%slip, largest)
-        new%dissipation = min(old%dissipation + mean * slid%slip * way%work_ratio, largest)
         answer%tau(1) = way%tau(1)
         answer%tau(2) = way%tau(2)
-        call find_derivatives(way, trial%stiffness / max(way%stiffness + slid%d_slip, &
-            epsilon(share) * way%stiffness), pull, by_p, answer)
-    end subroutine slip_update
-
-    !> Derivatives of the traction of a contact that slides (docs/theory.md, section 4).
-    pure subroutine find_derivatives(way, coupling, pull, by_p, answer)
-        type(sliding_way), intent(in) :: way
-        real(wp), intent(in) :: coupling   !! alpha_t/D [-]
-        real(wp), intent(in) :: pull(2)    !! growth of the resistance with q [F/L^3]
-        real(wp), intent(in) :: by_p       !! and with the pressure [-]
-        type(tangential_answer), intent(inout) :: answer   !! out: all but the traction
-        real(wp) :: response(2)
-
+        coupling = stiffness / max(way%stiffness + slid%d_slip, epsilon(share) * way%stiffness)
         response(1) = coupling * way%response(1)
         response(2) = coupling * way%response(2)
         answer%by_pressure(1) = response(1) * by_p
@@ -424,7 +453,7 @@ contains
         answer%by_q(2, 1) = response(2) * pull(1) - way%across * way%along(1) * way%along(2)
         answer%by_q(1, 2) = response(1) * pull(2) - way%across * way%along(1) * way%along(2)
         answer%by_q(2, 2) = response(2) * pull(2) + way%across * way%along(1)**2
-    end subroutine find_derivatives
+    end subroutine answer_of_slip
 
     !> Along the trial traction, as every isotropic surface slides (squeeze = 1), and an orthotropic
     !> one by option. How much of the traction counts depends on the direction alone.
@@ -435,32 +464,40 @@ contains
         type(sliding), intent(out) :: slid
         type(sliding_way), intent(out) :: way
         integer, intent(out) :: status          !! ok, snap back, or no convergence
-        real(wp) :: inverse, q(2)
+        real(wp) :: inverse
 
-        q(1) = trial%q(1)
-        q(2) = trial%q(2)
         inverse = 1.0_wp / trial%distance
         way%stiffness = trial%stiffness
         way%work_ratio = 1.0_wp
         way%cross_stiffness = 0.0_wp
         if (abs(squeeze - 1.0_wp) > 0.0_wp) then
-            inverse = 1.0_wp / hypot(q(1), q(2))
+            inverse = 1.0_wp / hypot(trial%q(1), trial%q(2))
             way%stiffness = trial%stiffness * trial%distance * inverse
             way%work_ratio = trial%stiffness / way%stiffness
-            way%cross_stiffness = (q(1) * inverse) * (q(2) * inverse) * (squeeze**2 - 1.0_wp) &
-                * way%work_ratio
+            way%cross_stiffness = (trial%q(1) * inverse) * (trial%q(2) * inverse) &
+                * (squeeze**2 - 1.0_wp) * way%work_ratio
         end if
         call return_map(surface, trial%stiffness * trial%distance, way%stiffness, trial%pressure, &
             trial%dt, trial%start, slid, status)
         if (status < 0) return
-        way%across = slid%resistance * way%work_ratio * inverse
+        call follow_trial(trial%q, inverse, slid%resistance * way%work_ratio, way)
         way%cross_stiffness = way%cross_stiffness * way%across
+    end subroutine slide_radially
+
+    !> A traction along the trial displacement, and a slip along both.
+    pure subroutine follow_trial(q, inverse, traction, way)
+        real(wp), intent(in) :: q(2)       !! trial displacement [L]
+        real(wp), intent(in) :: inverse    !! of its length [1/L]
+        real(wp), intent(in) :: traction   !! [F/L^2]
+        type(sliding_way), intent(inout) :: way   !! out: traction, directions, and `across`
+
+        way%across = traction * inverse
         way%tau(1) = way%across * q(1)
         way%tau(2) = way%across * q(2)
         way%along(1) = q(1) * inverse
         way%along(2) = q(2) * inverse
         way%response(1) = way%along(1)
         way%response(2) = way%along(2)
-    end subroutine slide_radially
+    end subroutine follow_trial
 
 end module friction_contact

@@ -49,6 +49,7 @@ EXCEPTIONS = {
     ('driver/model/linear_stability.f90', 'dgeev'): LAPACK,
     ('tests/unit/test_linear_stability.pf', 'dgeev'): LAPACK,
     ('src/friction_c.f90', '*'): C,
+    ('src/friction_c_point.f90', '*'): C,
     ('src/friction_mod.f90', 'friction_update_frame'): PUBLISHED,
     ('src/friction_mod.f90', 'friction_tangential'): PUBLISHED,
     ('src/friction_mod.f90', 'update_arrays_batch'): BOUNDS,

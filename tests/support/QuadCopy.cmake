@@ -3,7 +3,7 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 get_target_property(originals stickslip_objects SOURCES)
-list(REMOVE_ITEM originals friction_c.f90 friction_facts_c.f90)
+list(REMOVE_ITEM originals friction_c.f90 friction_c_point.f90 friction_facts_c.f90)
 list(FILTER originals EXCLUDE REGEX "batch|lane|kernel|points|slip_rate|threads|\\.c$")
 foreach(kind quad counted)
     set(${kind}_copies)

@@ -10,13 +10,21 @@ import pathlib
 import re
 import sys
 
-OVERSIZE = """    pure function oversize(x) result(bits)
-        real(wp), intent(in) :: x
-        integer(int64) :: bits
+# What looks at the bits of numbers, which stand elsewhere in longer ones.
+BY_VALUE = {
+    'same': """    pure function same(x, y)
+        real(wp), intent(in) :: x, y
+        logical :: same
 
-        bits = 0
-        if (.not. abs(x) < 2.0_wp**333) bits = ibset(bits, 62)
-    end function oversize"""
+        same = .not. (x < y .or. x > y)
+    end function same""",
+    'excess': """    pure function excess(x) result(difference)
+        real(wp), intent(in) :: x
+        integer(int64) :: difference
+
+        difference = 0
+        if (abs(x) < 2.0_wp**333) difference = -1
+    end function excess"""}
 
 
 def renamed(text: str, prefix: str) -> str:
@@ -39,8 +47,8 @@ def with_a_counter(text: str) -> str:
 
 def in_quadruple_precision(text: str) -> str:
     text = renamed(text, 'quad').replace('real64', 'real128')
-    # The exponent stands elsewhere in a longer number.
-    text = re.sub(r' *pure function oversize\(.*?end function oversize', OVERSIZE, text, flags=re.DOTALL)
+    for name, function in BY_VALUE.items():
+        text = re.sub(rf' *pure function {name}\(.*?end function {name}\b', function, text, flags=re.DOTALL)
     # Iterations stop before a step of which the square or the cube is round-off.
     text = re.sub(r'\bsmall_step = 1\.0e-5_wp', 'small_step = 1.0e-11_wp', text)
     return re.sub(r'\bsmall_newton_step = 1\.0e-8_wp', 'small_newton_step = 1.0e-17_wp', text)
