@@ -18,6 +18,7 @@ from ._namelist import InputError
 from ._records import LEAST_EVENTS, Analysis, Record, analyse, means_between
 from ._run import check_runs, spring_force
 from ._search import (
+    FOLLOWS,
     Constant,
     Journal,
     Limits,
@@ -390,7 +391,7 @@ def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, mis
     if not misfit @ misfit > noise.mean() + UNEXPLAINED * noise.std():
         return []
     drift = _drift_remarks(problem, candidate, target)
-    if whole > 5.0:
+    if whole > FOLLOWS:
         told = compare(problem, candidate, target.analysis)
         return [f'{name}: the model does not follow this record (misfit {whole:.2g} standard deviations): its peaks are '
                 f'{told["peak"]["measured"]:.4g} and rise by {told["slope"]["measured"]:.4g} per unit of time, the model\'s '

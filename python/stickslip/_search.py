@@ -407,13 +407,15 @@ def _search(problem: Problem, seed: int, starts: int, best: Best) -> tuple[np.nd
 
 def _fine(problem: Problem, candidate: np.ndarray, best: Best, label: str) -> bool:
     """Least squares on all features from one start. Is the search over? It is where noise explains the misfit, or where
-    another start has come to the same one. A start that stays far above another's end is given up."""
-    other = best.cost
+    another start has come to the same one, which the model more or less follows: in a wrong valley there is room for two. Before the
+    end of the descent, which may pass by, the constants must be the same, too. A start that stays far above another's end is given up."""
+    other, place = best.cost, best.candidate
     for k, (floor, step, loss) in enumerate(STAGES):
         candidate, cost = _descend(problem, candidate, floor, step, loss, 8)
         best.update((candidate, cost))
         problem.limits.tell(f'{label}: misfit {cost / problem.size:.3g} a feature')
-        if k > 0 and other / SAME < cost < SAME * other:
+        at_end = k == len(STAGES) - 1 or (place is not None and np.abs(candidate - place).max() < BESIDE)
+        if k > 0 and at_end and other / SAME < cost < min(SAME * other, FOLLOWS**2 * problem.size):
             return True
         if k > 0 and cost > HOPELESS * other:
             return False
@@ -421,6 +423,8 @@ def _fine(problem: Problem, candidate: np.ndarray, best: Best, label: str) -> bo
 
 
 SAME = 1.5          # times the misfit of another start: the same valley
+BESIDE = 0.05       # of a constant, relative: the same place
+FOLLOWS = 5.0       # standard deviations of a feature on average: above, the model does not follow the record
 HOPELESS = 30.0     # times the misfit of another start
 
 

@@ -10,11 +10,12 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import stickslip
-from stickslip import _fit_command, _namelist
+from stickslip import _fit_command, _namelist, _search
 from stickslip._features import make_target
 from stickslip._records import analyse, find_falls
 
@@ -183,6 +184,18 @@ class Fit(unittest.TestCase):
         for base, other in ((lists, table), (table, lists), (table, {'velocity': 2.0})):
             self.assertEqual(_namelist.merge({'drive': {**base, 'normal_phase': 0.1}}, {'drive': other}), {'drive': {**other, 'normal_phase': 0.1}})
         self.assertEqual(_namelist.merge({'drive': lists}, {'drive': {'velocity': 2.0}}), {'drive': {**lists, 'velocity': 2.0}})
+
+    def test_a_start_that_passes_by_the_misfit_of_another_goes_on(self):
+        """Once the search ended there, at a hundred times the misfit that it would have come to; and in a wrong valley with two starts."""
+        first = [(0.0, 9e3), (0.1, 9e2), (0.2, 3e2), (0.3, 2e2)]
+        elsewhere, beside = [(1.0, 9e3), (1.1, 2.5e2), (1.2, 30.0), (1.3, 4.0)], [(0.1, 9e2), (0.31, 2.1e2), (0.32, 2e2), (0.32, 2e2)]
+        for second, size, cost, over in ((elsewhere, 10, 4.0, False), (beside, 10, 200.0, True), (beside, 7, 200.0, False)):
+            steps = iter([(np.array([place]), misfit) for place, misfit in first + second])
+            problem, best = mock.Mock(size=size), _search.Best()
+            with mock.patch.object(_search, '_descend', lambda *_: next(steps)), mock.patch.object(_search, '_by_noise_alone', lambda *_: 1.0):
+                self.assertFalse(_search._fine(problem, np.array([0.0]), best, ''))
+                self.assertEqual(_search._fine(problem, np.array([1.0]), best, ''), over)
+            self.assertEqual(best.cost, cost)
 
     def test_a_search_that_is_stopped_early_gives_its_best(self):
         found = stickslip.fit(self.record, INPUT, **SETTINGS, most_evaluations=12)
