@@ -376,6 +376,10 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
                                f'({ringing:.3g}): small changes of the constants can move the slider to another cycle')
         if target.analysis.scattered:
             remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
+            drive = problem.settings(candidate, target).get('drive', {})
+            if 'file' in drive or any(np.ptp(np.ravel(drive.get(key, 0.0))) > 0.0 for key in ('velocity', 'normal')):
+                remarks.append(f'{name}: its drive changes, and the model\'s medians are those of its first events: fit the parts with one '
+                               'velocity and one normal traction as records of their own (start, end)')
         if target.wander.size:
             remarks.append(f'{name}: from cycle to cycle the force differs by {np.std(target.wander):.3g}, from sample to sample '
                            f'by {target.analysis.noise:.3g}: its noise lasts; errors are those of such noise')

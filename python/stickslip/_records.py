@@ -502,7 +502,8 @@ def _drift(record: Record, time: np.ndarray, force: np.ndarray, falls: Falls, fr
     level = float(np.median(late.peak))
     if abs(rise) > 0.5 * level:
         record.refuse(f'the peaks drift by {rise:.3g}, more than half of their level {level:.3g}: a sensor or a surface '
-                      'that changes so much is not what the model describes')
+                      'that changes so much is not what the model describes. Parts with one normal traction each may be records of '
+                      'their own (start, end)')
     trend = straight_trend(time, force, falls, from_rest)
     drift = float(np.interp(late.onset[-1], time, trend) - np.interp(late.onset[0], time, trend))
     return trend, (f'the peaks drift by {drift:.3g} over the record, {abs(drift) / drop:.0%} of a drop; a straight line was '

@@ -185,6 +185,13 @@ class Fit(unittest.TestCase):
             self.assertEqual(_namelist.merge({'drive': {**base, 'normal_phase': 0.1}}, {'drive': other}), {'drive': {**other, 'normal_phase': 0.1}})
         self.assertEqual(_namelist.merge({'drive': lists}, {'drive': {'velocity': 2.0}}), {'drive': {**lists, 'velocity': 2.0}})
 
+    def test_medians_of_a_record_whose_drive_changes_are_told(self):
+        drive = {'velocity': [1.0, 1.0], 'duration': [17.0, 13.0], 'normal': [0.01, 0.008]}
+        t, force = synthetic(drive=drive, time={'t_end': 30.0, 'rtol': 1e-8})
+        for settings, count in (({'drive': drive}, 1), ({}, 0)):
+            found = stickslip.fit(stickslip.Record(t, force, settings), INPUT, **{**SETTINGS, 'starts': 1}, most_evaluations=20)
+            self.assertEqual(sum('fit the parts with one velocity and one normal traction' in warning for warning in found.warnings), count)
+
     def test_a_start_that_passes_by_the_misfit_of_another_goes_on(self):
         """Once the search ended there, at a hundred times the misfit that it would have come to; and in a wrong valley with two starts."""
         first = [(0.0, 9e3), (0.1, 9e2), (0.2, 3e2), (0.3, 2e2)]
