@@ -269,15 +269,25 @@ contains
     end subroutine follow_fall
 
     !> When slip becomes slow: by the mean slip rates of a fast step and of the next one, which is
-    !> not, as rates in their middles [T].
+    !> not, as rates in their middles. What exceeds the speed of the loading decays exponentially,
+    !> and is its mean a little before the middle [T].
     pure function slow_from(self, now, slip_rate) result(time)
         type(event_finder), intent(in) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step that is not [L/T]
         real(dp) :: time
+        real(dp) :: rates(3)    ! in the fast step, at the limit, in the other step
+        real(dp) :: steps(2), times(2), speed
 
-        time = self%middle + (self%rate - limit(self)) / (self%rate - slip_rate) * (0.5_dp &
-            * (self%since%time + now%time) - self%middle)
+        steps = [2.0_dp * (self%since%time - self%middle), now%time - self%since%time]
+        times = [self%middle, self%since%time + 0.5_dp * steps(2)]
+        rates = [self%rate, limit(self), slip_rate]
+        speed = self%driving + self%yielding
+        if (minval(rates) > speed) then
+            rates = log(rates - speed)
+            times = times - (rates(1) - rates(3)) / (times(2) - times(1)) * steps**2 / 24.0_dp
+        end if
+        time = times(1) + (rates(1) - rates(2)) / (rates(1) - rates(3)) * (times(2) - times(1))
     end function slow_from
 
     !> The fall is over: adds it to the events if it is one.

@@ -11,12 +11,13 @@ module continuous_steps
     use dormand_prince, only : dormand_prince_step
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
         prop_alpha_n, statev_u_n
+    use free_swing, only : swing
     use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
-        settle, switch_values, switches
+        root_bracket, settle, switch_values, switches
     use rosenbrock, only : rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
-        phase_open, place, slip, unknowns, velocity
+        phase_open, phase_stick, place, slip, unknowns, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -44,10 +45,12 @@ module continuous_steps
         real(dp) :: swinging = huge(1.0_dp)     !! and longer than this that across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
         logical :: reloaded = .false.           !! it is not always the same
+        type(swing) :: free                     !! of a block whose contact rests
+        logical :: swings = .false.             !! the step is of that, in closed form
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
-        procedure, private :: begin, attempt, locate, choose_method, set_weights, fill
+        procedure, private :: begin, attempt, swing_on, locate, choose_method, set_weights, fill
     end type continuous
 
 contains
@@ -86,6 +89,10 @@ contains
                 * eq%alpha, eq%damping + eq%area * eq%damper)
             self%swinging = amplifying_step(eq%across%mass, eq%across%stiffness + eq%area &
                 * eq%alpha_n, eq%across%damping)
+            call self%free%prepare(eq)
+            eq%may_rest = eq%surface%traits%memory == 1 .and. self%free%frequency > 0.0_dp &
+                .and. .not. (eq%damper > 0.0_dp .or. eq%surface%tau_max < huge(eq%damper) &
+                .or. eq%across%free())
             call self%block%synchronise(start)
             eq%phase = phase_at_rest(eq)
             if (start%normal <= min(0.0_dp, eq%open_below)) eq%phase = phase_open
@@ -127,6 +134,7 @@ contains
         again = .false.
         do
             wanted = min(self%dt, longest(self))
+            if (self%swings) wanted = min(self%dt_max, 1.0_dp / self%free%frequency)
             end = end_of_step(old%time, wanted, self%limit)
             associate (eq => self%block%equations)
                 if (.not. (eq%steady .or. eq%across%free())) then
@@ -153,9 +161,11 @@ contains
                 return
             end if
         end do
-        call self%lengthen(h, error, wanted, again)
-        if (tried%switch > 0) end = old%time + tried%h
-        call self%choose_method(tried)
+        if (tried%switch > 0 .or. tried%h < end - old%time) end = old%time + tried%h
+        if (.not. self%swings) then
+            call self%lengthen(h, error, wanted, again)
+            call self%choose_method(tried)
+        end if
         associate (block => self%block, eq => self%block%equations)
             slipped = block%y(slip)
             block%y = tried%y
@@ -169,6 +179,19 @@ contains
         end associate
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Does the block swing on a contact that rests, by more than the tolerated error?
+    pure function swings_freely(self) result(yes)
+        class(continuous), intent(in) :: self
+        logical :: yes
+
+        yes = .false.
+        associate (eq => self%block%equations, y => self%block%y)
+            if (.not. eq%rests .or. eq%phase /= phase_stick) return
+            yes = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension)) &
+                * self%weights(elastic) > 1.0_dp
+        end associate
+    end function swings_freely
 
     !> Length of the longest step [T]. An undamped contact that does not slip rings as it began:
     !> explicit steps that amplify what the error does not see let it go early.
@@ -200,6 +223,8 @@ contains
             self%block%known = .false.
         end if
         associate (eq => self%block%equations)
+            if (eq%may_rest .and. .not. eq%rests .and. eq%phase == phase_stick) eq%phase &
+                = phase_at_rest(eq)
             if (.not. (eq%constant .and. self%block%known)) then   ! else the load is what it was
                 pressure = self%drive%normal_traction(old%time, piece)
                 open_below = eq%open_below
@@ -218,6 +243,8 @@ contains
         end associate
         call self%take_limit(old%time)
         call settle(self%block, old%time)
+        call self%set_weights(old%time)
+        self%swings = swings_freely(self)
     end subroutine begin
 
     !> Has slip no rate any more, or one that leaves its block far behind?
@@ -284,7 +311,10 @@ contains
         tried%error = huge(tried%error)
         self%jumped = .not. self%block%known
         if (.not. self%block%known) return
-        call self%set_weights(t)
+        if (self%swings) then
+            call self%swing_on(t, tried)
+            return
+        end if
         if (self%implicit) then
             scales(:, 1) = self%weights
             scales(:, 2) = self%natural
@@ -301,6 +331,31 @@ contains
         call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
         self%jumped = .not. tried%error < huge(tried%error)
     end subroutine attempt
+
+    !> Takes a step of the block on its springs alone. It ends where the block is fastest in the sense
+    !> of the traction, or slip between two ends would not be seen.
+    subroutine swing_on(self, t, tried)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t             !! [T]
+        type(trial), intent(inout) :: tried   !! its length is given
+        real(dp), parameter :: far = 0.05_dp   !! part of the step
+        real(dp) :: v_drive, turn
+        logical :: failed
+
+        associate (block => self%block, eq => self%block%equations)
+            v_drive = block%y(velocity) + block%first(extension)
+            if (eq%sense * block%first(velocity) > 0.0_dp) then
+                turn = self%free%until_it_turns(block%y(:controlled), v_drive, eq%sense)
+                if (turn > far * tried%h) tried%h = min(tried%h, turn)
+            end if
+            call self%free%go_on(tried%h, block%y, v_drive, block%first(memory), tried%y)
+            call eq%rates(t + tried%h, tried%y, tried%last, failed)
+        end associate
+        tried%error = 0.0_dp
+        tried%stiffness = 0.0_dp
+        call self%count_iterations(1)
+        self%jumped = .false.
+    end subroutine swing_on
 
     !> What the error of each unknown is compared with.
     subroutine set_weights(self, t)
@@ -334,9 +389,11 @@ contains
         type(trial), intent(inout) :: tried
         integer, parameter :: most_tries = 40
         real(dp), parameter :: close = 1.0e-12_dp
+        real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
         type(trial) :: again
-        real(dp) :: g(switches), low, high, g_low, g_high, middle, share
-        integer :: i, which, side
+        type(root_bracket) :: bracket
+        real(dp) :: g(switches), middle, share, enough
+        integer :: i, which
 
         call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
         if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
@@ -349,11 +406,13 @@ contains
             if (middle < share) which = i
             share = min(share, middle)
         end do
-        low = 0.0_dp
-        high = tried%h
-        g_low = -g(which)   ! the start is before the end of the phase, whatever round-off says
-        g_high = g(which)
-        side = 0
+        bracket%high = tried%h
+        bracket%g_low = -g(which)   ! the start is before the end of the phase, whatever round-off
+                                    ! says
+        bracket%g_high = g(which)
+        enough = 0.0_dp
+        if (self%block%equations%rests .and. which == 1) enough = sqrt(unseen * g(which) / (tried%h &
+            * self%weights(elastic)))
         again = tried
         middle = share * tried%h
         do i = 1, most_tries
@@ -365,23 +424,13 @@ contains
                 return
             end if
             call switch_values(self%block%equations, t + middle, again%y, again%last, g)
-            if (g(which) > 0.0_dp) then
-                high = middle
-                g_high = g(which)
-                if (side == 1) g_low = 0.5_dp * g_low
-                side = 1
-            else
-                low = middle
-                g_low = g(which)
-                if (side == -1) g_high = 0.5_dp * g_high
-                side = -1
-            end if
+            call bracket%take(middle, g(which))
             tried = again
-            middle = (low * g_high - high * g_low) / (g_high - g_low)
-            if (.not. (middle > low .and. middle < high)) middle = 0.5_dp * (low + high)
+            if (g(which) > 0.0_dp .and. g(which) <= enough) exit
+            middle = bracket%guess()
             if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * shortest * t)) exit
         end do
-        if (g(which) <= 0.0_dp) call pass(self, t, which, high, tried)
+        if (g(which) <= 0.0_dp) call pass(self, t, which, bracket%high, tried)
         tried%switch = which
     end subroutine locate
 

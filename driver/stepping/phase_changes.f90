@@ -19,6 +19,15 @@ module phase_changes
     integer, parameter, public :: switches = 4   !! ways in which a phase can end
     integer, parameter, public :: lifts = 4      !! the one in which the block leaves the base
 
+    !> Between what a switch value is not positive and positive.
+    type, public :: root_bracket
+        real(dp) :: low = 0.0_dp, high = 0.0_dp
+        real(dp) :: g_low = 0.0_dp, g_high = 0.0_dp   !! values there
+        integer, private :: side = 0   !! that was moved last: -1 the lower one, 1 the upper one
+    contains
+        procedure :: guess, take
+    end type root_bracket
+
 contains
 
     !> Positive where the phase has ended: 1 because the surface starts or stops to slide, 2 because
@@ -36,6 +45,14 @@ contains
         logical :: jumps, gradual, capped
 
         g = -1.0_dp
+        if (eq%rests) then
+            if (eq%phase == phase_slide) g(1) = -dy(slip)
+            if (eq%phase == phase_stick) then
+                g(1) = eq%slip_tendency(y)
+                g(2) = -eq%sense * y(elastic)   ! the other way it slips again
+            end if
+            return
+        end if
         if (eq%across%mass > 0.0_dp) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
             * (eq%open_below - eq%pressed_to(y))
         if (eq%damper > 0.0_dp) then
@@ -120,27 +137,60 @@ contains
         real(dp), intent(in) :: end(unknowns), last(unknowns)   !! its end, and rates there
         integer, intent(in) :: which       !! of the switch values
         real(dp) :: share
-        integer, parameter :: bisections = 20
-        real(dp) :: low, middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
+        integer, parameter :: most_tries = 20
+        real(dp), parameter :: close = 1.0e-6_dp
+        type(root_bracket) :: bracket
+        real(dp) :: middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
         logical :: failed
         integer :: i
 
-        low = 0.0_dp
-        share = 1.0_dp
+        call switch_values(block%equations, t, block%y, block%first, g)
+        bracket%g_low = g(which)
+        call switch_values(block%equations, t + h, end, last, g)
+        bracket%high = 1.0_dp
+        bracket%g_high = g(which)
         change = end - block%y
-        do i = 1, bisections
-            middle = 0.5_dp * (low + share)
+        share = bracket%guess()
+        do i = 1, most_tries
+            middle = share
             y = block%y + middle * change + middle * (middle - 1.0_dp) * ((1.0_dp - 2.0_dp &
                 * middle) * change + h * ((middle - 1.0_dp) * block%first + middle * last))
             call block%equations%rates(t + middle * h, y, dy, failed)
             call switch_values(block%equations, t + middle * h, y, dy, g)
-            if (g(which) > 0.0_dp) then
-                share = middle
-            else
-                low = middle
-            end if
+            call bracket%take(middle, g(which))
+            share = bracket%guess()
+            if (abs(share - middle) <= close) exit
         end do
     end function first_root
+
+    !> Where the value of a switch is expected to be 0: false position, by the Illinois method.
+    pure function guess(self) result(x)
+        class(root_bracket), intent(in) :: self
+        real(dp) :: x
+
+        x = 0.5_dp * (self%low + self%high)
+        if (.not. self%g_low < 0.0_dp) return   ! round-off calls the start the end of the phase
+        x = (self%low * self%g_high - self%high * self%g_low) / (self%g_high - self%g_low)
+        if (.not. (x > self%low .and. x < self%high)) x = 0.5_dp * (self%low + self%high)
+    end function guess
+
+    !> Takes in a value between the ends.
+    pure subroutine take(self, x, g)
+        class(root_bracket), intent(inout) :: self
+        real(dp), intent(in) :: x, g
+
+        if (g > 0.0_dp) then
+            self%high = x
+            self%g_high = g
+            if (self%side == 1) self%g_low = 0.5_dp * self%g_low
+            self%side = 1
+        else
+            self%low = x
+            self%g_low = g
+            if (self%side == -1) self%g_high = 0.5_dp * self%g_high
+            self%side = -1
+        end if
+    end subroutine take
 
     !> Rates at the start of a step, in the phase that holds there.
     subroutine settle(block, t)
@@ -153,13 +203,14 @@ contains
         integer :: i
 
         came_to_rest = .false.
+        if (block%known .and. block%equations%rests) return   ! it has been seen where the step ended
         associate (eq => block%equations)
             do i = 1, most_switches
                 if (.not. block%known) call eq%rates(t, block%y, block%first, failed)
                 if (.not. block%known .and. .not. failed) block%known = .true.
                 if (eq%phase == phase_open) return
                 call switch_values(eq, t, block%y, block%first, g)
-                if (eq%phase == phase_stick .and. .not. eq%damper > 0.0_dp) then
+                if (eq%phase == phase_stick .and. .not. (eq%damper > 0.0_dp .or. eq%rests)) then
                     call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
                     if (g(1) < -round_off * eq%strength(block%y, pressure)) return
                     slides = would_slide(block, pressure, pressure_rate)
@@ -219,6 +270,11 @@ contains
 
         block%known = .false.
         associate (eq => block%equations)
+            if (eq%rests) then
+                eq%phase = merge(phase_slide, phase_stick, eq%phase == phase_stick)
+                eq%sense = eq%sense_of(block%y(elastic))
+                return
+            end if
             call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
             if (eq%damper > 0.0_dp) then
                 if (eq%phase == phase_slide) then

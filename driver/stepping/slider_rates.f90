@@ -53,6 +53,9 @@ module slider_rates
         real(dp), private :: constant_velocity = 0.0_dp   !! [L/T]
         real(dp), private :: constant_pressure = 0.0_dp   !! [F/L^2]
         real(dp) :: least_pressure = 0.0_dp   !! of a contact that is not open [F/L^2]
+        logical :: may_rest = .false.    !! under a constant load, slip that comes gradually has a
+                                         !! phase of its own, and none of it another
+        logical :: rests = .false.       !! so it is in this piece
         logical :: eased = .false.       !! the pressure comes to that smoothly
         integer :: acting = controlled   !! first unknowns, which act on the others
         integer :: phase = phase_stick
@@ -60,7 +63,7 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
-            traction, inputs, pull, follows_traction, sense_of, follows_share, runs_away, &
+            traction, inputs, pull, slip_tendency, follows_traction, sense_of, follows_share, runs_away, &
             damped_contact, balance_at, pressed_to
     end type slider_equations
 
@@ -85,6 +88,7 @@ contains
         self%steady = .not. (abs(self%drive%acceleration(piece)) > 0.0_dp &
             .or. abs(self%drive%normal_rate(piece)) > 0.0_dp .or. self%drive%amplitude > 0.0_dp)
         self%constant = self%steady .and. .not. self%across%free()
+        self%rests = self%may_rest .and. self%constant
         self%acting = ratio - 1
         if (self%damper > 0.0_dp .or. self%surface%tau_max < huge(1.0_dp)) self%acting = ratio
         if (self%across%free()) self%acting = controlled
@@ -284,7 +288,7 @@ contains
         load%loading = sense * load%stiffness * contact%velocity
         load%pressure = pressure
         load%pressure_rate = pressure_rate
-        load%sliding = self%surface%traits%onset /= onset_gradual
+        load%sliding = self%rests .or. self%surface%traits%onset /= onset_gradual
         state = law_state_of(self, y, pressure)
         if (self%phase == phase_slide) then
             call self%surface%slip_rate(state, load, contact%slip, failed)
@@ -304,6 +308,18 @@ contains
         changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
+
+    !> Slip rate of a surface with phases of rest as it would be while it slides: below 0 it rests.
+    pure function slip_tendency(self, y) result(rate)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp) :: rate   !! [L/T]
+        logical :: jumps
+
+        call self%surface%slip_rate(law_state_of(self, y, self%constant_pressure), load_rates( &
+            self%alpha * abs(y(elastic)), self%sense * self%alpha * y(velocity), self%alpha, &
+            self%constant_pressure, 0.0_dp, .true.), rate, jumps)
+    end function slip_tendency
 
     !> A contact whose spring has a damper beside it (section 16): the traction follows from the
     !> slip rate, and that from a balance.
