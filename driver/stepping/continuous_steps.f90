@@ -92,7 +92,7 @@ contains
             call self%free%prepare(eq)
             eq%may_rest = eq%surface%traits%memory == 1 .and. self%free%frequency > 0.0_dp &
                 .and. .not. (eq%damper > 0.0_dp .or. eq%surface%tau_max < huge(eq%damper) &
-                .or. eq%across%free())
+                .or. eq%surface%cohesion > 0.0_dp .or. eq%across%free())
             call self%block%synchronise(start)
             eq%phase = phase_at_rest(eq)
             if (start%normal <= min(0.0_dp, eq%open_below)) eq%phase = phase_open

@@ -193,6 +193,19 @@ contains
         real(dp), intent(in) :: y(controlled)   !! the others do not matter
         real(dp), intent(out) :: dy(unknowns)
         logical, intent(out) :: failed          !! slip has no rate: it jumps
+
+        if (self%rests .and. self%phase /= phase_open) then
+            call swinging_rates(self, y, dy, failed)
+        else
+            call any_rates(self, t, y, dy, failed)
+        end if
+    end subroutine rates
+
+    pure subroutine any_rates(self, t, y, dy, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: t, y(controlled)
+        real(dp), intent(out) :: dy(unknowns)
+        logical, intent(out) :: failed
         type(contact_motion) :: contact
         real(dp) :: force, v_drive, pressure, pressure_rate
 
@@ -237,7 +250,7 @@ contains
             dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
         end if
         if (self%across%mass > 0.0_dp) call move_across(self, t, y, dy)
-    end subroutine rates
+    end subroutine any_rates
 
     !> The motion across the interface, which friction does not act on.
     pure subroutine move_across(self, t, y, dy)
@@ -288,7 +301,7 @@ contains
         load%loading = sense * load%stiffness * contact%velocity
         load%pressure = pressure
         load%pressure_rate = pressure_rate
-        load%sliding = self%rests .or. self%surface%traits%onset /= onset_gradual
+        load%sliding = self%surface%traits%onset /= onset_gradual
         state = law_state_of(self, y, pressure)
         if (self%phase == phase_slide) then
             call self%surface%slip_rate(state, load, contact%slip, failed)
@@ -309,16 +322,67 @@ contains
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
 
-    !> Slip rate of a surface with phases of rest as it would be while it slides: below 0 it rests.
+    !> The same of a surface with phases of rest, most steps of which are short: without what such a
+    !> block does not have.
+    pure subroutine swinging_rates(self, y, dy, failed)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(out) :: dy(unknowns)
+        logical, intent(out) :: failed
+        type(law_state) :: changes
+        real(dp) :: force, traction, sense, slip_rate
+
+        force = self%stiffness * y(extension)
+        traction = self%alpha * y(elastic)
+        sense = sign(1.0_dp, traction)
+        if (.not. abs(traction) > 0.0_dp) sense = self%sense_of(y(velocity))
+        failed = .false.
+        slip_rate = 0.0_dp
+        if (self%phase == phase_slide) call slide(self, y, sense, slip_rate, failed)
+        failed = failed .or. max(abs(y(velocity)), abs(slip_rate)) > too_fast
+        if (failed) then
+            dy = 0.0_dp
+            return
+        end if
+        changes = self%surface%law%state_rates(law_state(mu=y(memory), r=0.0_dp), load_rates(&
+            0.0_dp, 0.0_dp, self%alpha, 0.0_dp, 0.0_dp, .true.), slip_rate)
+        dy(extension) = self%constant_velocity - y(velocity)
+        dy(velocity) = (force - self%damping * y(velocity) - self%area * traction) / self%mass
+        dy(elastic) = y(velocity) - sense * slip_rate
+        dy(memory) = changes%mu
+        dy(ratio:away) = 0.0_dp
+        dy(slip) = slip_rate
+        dy(drive_work) = force * self%constant_velocity
+        dy(damped) = self%damping * y(velocity)**2
+        dy(dissipated) = abs(traction) * slip_rate
+    end subroutine swinging_rates
+
+    !> Slip rate of such a surface; below 0, it is about to rest.
+    pure subroutine slide(self, y, sense, rate, jumps)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: sense   !! of the slip in x
+        real(dp), intent(out) :: rate   !! [L/T]
+        logical, intent(out) :: jumps
+        real(dp) :: carried, full, share
+
+        carried = self%alpha * abs(y(elastic))
+        full = y(memory) * self%constant_pressure + self%surface%law%cohesion
+        share = 0.0_dp
+        if (full > 0.0_dp) share = min(1.0_dp, carried / full)
+        call self%surface%law%slip_rate(law_state(mu=y(memory), r=share), load_rates(carried, &
+            sense * self%alpha * y(velocity), self%alpha, self%constant_pressure, 0.0_dp, .true.), &
+            rate, jumps)
+    end subroutine slide
+
+    !> Slip rate of a surface that rests as it would be while it slides: above 0, it is about to.
     pure function slip_tendency(self, y) result(rate)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled)
         real(dp) :: rate   !! [L/T]
         logical :: jumps
 
-        call self%surface%slip_rate(law_state_of(self, y, self%constant_pressure), load_rates( &
-            self%alpha * abs(y(elastic)), self%sense * self%alpha * y(velocity), self%alpha, &
-            self%constant_pressure, 0.0_dp, .true.), rate, jumps)
+        call slide(self, y, self%sense, rate, jumps)
     end function slip_tendency
 
     !> A contact whose spring has a damper beside it (section 16): the traction follows from the
