@@ -332,8 +332,8 @@ contains
         self%jumped = .not. tried%error < huge(tried%error)
     end subroutine attempt
 
-    !> Takes a step of the block on its springs alone. It ends where the block is fastest in the sense
-    !> of the traction, or slip between two ends would not be seen.
+    !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
+    !> sense of the traction, or slip between two ends would not be seen.
     subroutine swing_on(self, t, tried)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t             !! [T]
@@ -392,7 +392,7 @@ contains
         real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
         type(trial) :: again
         type(root_bracket) :: bracket
-        real(dp) :: g(switches), middle, share, enough
+        real(dp) :: g(switches), before(switches), middle, share, enough
         integer :: i, which
 
         call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
@@ -402,19 +402,26 @@ contains
         share = 2.0_dp
         do i = 1, switches
             if (g(i) <= 0.0_dp) cycle
-            middle = first_root(self%block, t, tried%h, tried%y, tried%last, i)
-            if (middle < share) which = i
+            middle = 1.0_dp
+            if (.not. self%swings) middle = first_root(self%block, t, tried%h, tried%y, &
+                tried%last, i)
+            if (middle <= share) which = i
             share = min(share, middle)
         end do
+        enough = 0.0_dp
+        if (self%block%equations%rests .and. which == 1) enough = sqrt(unseen * g(which) &
+            / (tried%h * self%weights(elastic)))
         bracket%high = tried%h
         bracket%g_low = -g(which)   ! the start is before the end of the phase, whatever round-off
                                     ! says
-        bracket%g_high = g(which)
-        enough = 0.0_dp
-        if (self%block%equations%rests .and. which == 1) enough = sqrt(unseen * g(which) / (tried%h &
-            * self%weights(elastic)))
+        bracket%g_high = g(which) - 0.5_dp * enough
         again = tried
         middle = share * tried%h
+        if (self%swings) then   ! a step in closed form costs no more than a guess
+            call switch_values(self%block%equations, t, self%block%y, self%block%first, before)
+            bracket%g_low = min(before(which), 0.0_dp) - 0.5_dp * enough
+            middle = bracket%guess()
+        end if
         do i = 1, most_tries
             again%h = middle
             call self%attempt(t, again)
@@ -424,7 +431,7 @@ contains
                 return
             end if
             call switch_values(self%block%equations, t + middle, again%y, again%last, g)
-            call bracket%take(middle, g(which))
+            call bracket%take(middle, g(which) - 0.5_dp * enough)
             tried = again
             if (g(which) > 0.0_dp .and. g(which) <= enough) exit
             middle = bracket%guess()

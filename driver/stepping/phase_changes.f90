@@ -39,26 +39,31 @@ contains
         real(dp), intent(in) :: y(controlled)
         real(dp), intent(in) :: dy(unknowns)   !! rates there
         real(dp), intent(out) :: g(switches)
+
+        g = -1.0_dp
+        if (eq%rests .and. eq%phase == phase_slide) g(1) = -dy(slip)
+        if (eq%rests .and. eq%phase == phase_stick) g(:2) = [eq%slip_tendency(y), -eq%sense &
+            * y(elastic)]   ! or the traction changes its side
+        if (eq%rests) return
+        if (eq%across%mass > 0.0_dp) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
+            * (eq%open_below - eq%pressed_to(y))
+        if (.not. eq%damper > 0.0_dp) then
+            call spring_switches(eq, t, y, dy, g)
+        else if (eq%follows_share() .and. eq%phase /= phase_open) then
+            g(1) = share_switch(eq, t, y)
+        end if
+    end subroutine switch_values
+
+    !> The same of a contact without a damper beside its spring.
+    pure subroutine spring_switches(eq, t, y, dy, g)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: t, y(controlled), dy(unknowns)
+        real(dp), intent(inout) :: g(switches)
         real(dp), parameter :: just_below = 1.0_dp - 1.0e-9_dp   !! or round-off would call it back
         type(load_rates) :: load
         real(dp) :: v_drive, pressure, pressure_rate, own, by_rate
         logical :: jumps, gradual, capped
 
-        g = -1.0_dp
-        if (eq%rests) then
-            if (eq%phase == phase_slide) g(1) = -dy(slip)
-            if (eq%phase == phase_stick) then
-                g(1) = eq%slip_tendency(y)
-                g(2) = -eq%sense * y(elastic)   ! the other way it slips again
-            end if
-            return
-        end if
-        if (eq%across%mass > 0.0_dp) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
-            * (eq%open_below - eq%pressed_to(y))
-        if (eq%damper > 0.0_dp) then
-            if (eq%follows_share() .and. eq%phase /= phase_open) g(1) = share_switch(eq, t, y)
-            return
-        end if
         gradual = eq%surface%traits%onset == onset_gradual
         capped = eq%surface%tau_max < huge(own)
         if (eq%phase == phase_open .or. gradual .and. .not. capped) return
@@ -100,7 +105,7 @@ contains
                 end if
             end select
         end associate
-    end subroutine switch_values
+    end subroutine spring_switches
 
     !> Positive where a subloading surface beside a damper stops to slide, or starts.
     pure function share_switch(eq, t, y) result(g)
@@ -138,7 +143,7 @@ contains
         integer, intent(in) :: which       !! of the switch values
         real(dp) :: share
         integer, parameter :: most_tries = 20
-        real(dp), parameter :: close = 1.0e-6_dp
+        real(dp), parameter :: close = 1.0e-5_dp
         type(root_bracket) :: bracket
         real(dp) :: middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
         logical :: failed
@@ -203,7 +208,7 @@ contains
         integer :: i
 
         came_to_rest = .false.
-        if (block%known .and. block%equations%rests) return   ! it has been seen where the step ended
+        if (block%known .and. block%equations%rests) return   ! the step before has seen to it
         associate (eq => block%equations)
             do i = 1, most_switches
                 if (.not. block%known) call eq%rates(t, block%y, block%first, failed)

@@ -63,8 +63,8 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
-            traction, inputs, pull, slip_tendency, follows_traction, sense_of, follows_share, runs_away, &
-            damped_contact, balance_at, pressed_to
+            traction, inputs, pull, slip_tendency, follows_traction, sense_of, follows_share, &
+            runs_away, damped_contact, balance_at, pressed_to
     end type slider_equations
 
     !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
