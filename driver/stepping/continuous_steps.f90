@@ -1,6 +1,6 @@
-!> Adaptive steps of one block in continuous time: the rate equations of module `slider_rates` by
-!> Dormand and Prince's method where they are not stiff, by Rodas4 where they are. Both take each
-!> step from the state alone, so that a run goes on from a checkpoint as if it had never stopped.
+!> Adaptive steps of one block in continuous time: the rate equations of module `slider_rates` by an
+!> explicit method where they are not stiff, by Rodas4 where they are. Both take each step from the
+!> state alone, so that a run goes on from a checkpoint as if it had never stopped.
 !>
 !> Steps end where a phase of the contact ends, found by taking them again until they do.
 module continuous_steps
@@ -8,7 +8,7 @@ module continuous_steps
     use abstract_integrator, only : integrator, step_report, unstable_without_inertia
     use archive_file, only : archive
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up
-    use dormand_prince, only : dormand_prince_step
+    use explicit_pairs, only : dormand_prince, explicit_pair, explicit_step, tsitouras
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
         prop_alpha_n, statev_u_n
     use free_swing, only : swing
@@ -37,12 +37,12 @@ module continuous_steps
         real(dp) :: rtol = 0.0_dp
         real(dp) :: natural(controlled) = 0.0_dp    !! sizes of the unknowns
         real(dp) :: weights(controlled) = 0.0_dp    !! inverse of the errors tolerated in a step
+        type(explicit_pair) :: pair = dormand_prince   !! the explicit method
         logical :: implicit = .false.           !! steps by Rodas4
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
-        real(dp) :: ringing = huge(1.0_dp)      !! explicit steps longer than this amplify that of
-                                                !! an undamped contact [T]
-        real(dp) :: swinging = huge(1.0_dp)     !! and longer than this that across the interface
+        real(dp) :: ringing = huge(1.0_dp)      !! radian of an undamped contact [T]
+        real(dp) :: swinging = huge(1.0_dp)     !! and of the motion across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
         logical :: reloaded = .false.           !! it is not always the same
         type(swing) :: free                     !! of a block whose contact rests
@@ -85,9 +85,9 @@ contains
                 eq%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
-            if (.not. eq%rigid) self%ringing = amplifying_step(eq%mass, eq%stiffness + eq%area &
+            if (.not. eq%rigid) self%ringing = undamped_radian(eq%mass, eq%stiffness + eq%area &
                 * eq%alpha, eq%damping + eq%area * eq%damper)
-            self%swinging = amplifying_step(eq%across%mass, eq%across%stiffness + eq%area &
+            self%swinging = undamped_radian(eq%across%mass, eq%across%stiffness + eq%area &
                 * eq%alpha_n, eq%across%damping)
             call self%free%prepare(eq)
             eq%may_rest = eq%surface%traits%memory == 1 .and. self%free%frequency > 0.0_dp &
@@ -101,14 +101,13 @@ contains
         end associate
     end subroutine prepare
 
-    !> The step at which Dormand and Prince's method begins to amplify the oscillation of a block on
-    !> its springs, if nothing damps that [T].
-    pure function amplifying_step(mass, stiffness, damping) result(dt)
+    !> The time in which a block on its springs swings by a radian, if nothing damps that: explicit
+    !> steps longer than a part of it amplify the swings [T].
+    pure function undamped_radian(mass, stiffness, damping) result(dt)
         real(dp), intent(in) :: mass        !! 0: it does not swing [F T^2/L]
         real(dp), intent(in) :: stiffness   !! of all its springs [F/L]
         real(dp), intent(in) :: damping     !! [F T/L]
         real(dp) :: dt
-        real(dp), parameter :: neutral = 0.998_dp         !! times the angular frequency
         real(dp), parameter :: least_damping = 1.0e-3_dp  !! ratio
         real(dp) :: critical
 
@@ -116,8 +115,8 @@ contains
         if (.not. mass > 0.0_dp) return
         critical = 2.0_dp * sqrt(stiffness * mass)
         if (damping >= least_damping * critical) return
-        dt = neutral * sqrt(mass / stiffness)
-    end function amplifying_step
+        dt = sqrt(mass / stiffness)
+    end function undamped_radian
 
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self
@@ -180,7 +179,8 @@ contains
         call self%fill(end, piece, old, new)
     end subroutine step
 
-    !> Does the block swing on a contact that rests, by more than the tolerated error?
+    !> Does the block swing on a contact that rests, by more than the tolerated error, or without an
+    !> end?
     pure function swings_freely(self) result(yes)
         class(continuous), intent(in) :: self
         logical :: yes
@@ -188,8 +188,8 @@ contains
         yes = .false.
         associate (eq => self%block%equations, y => self%block%y)
             if (.not. eq%rests .or. eq%phase /= phase_stick) return
-            yes = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension)) &
-                * self%weights(elastic) > 1.0_dp
+            yes = self%ringing < huge(self%ringing) .or. self%free%amplitude(y(:controlled), &
+                y(velocity) + self%block%first(extension)) * self%weights(elastic) > 1.0_dp
         end associate
     end function swings_freely
 
@@ -202,8 +202,9 @@ contains
 
         dt = self%dt_max
         if (self%implicit .or. self%block%equations%phase == phase_open) return
-        dt = min(dt, self%swinging)
-        if (self%block%first(slip) <= slow * abs(self%block%y(velocity))) dt = min(dt, self%ringing)
+        dt = min(dt, self%pair%neutral * self%swinging)
+        if (self%block%first(slip) <= slow * abs(self%block%y(velocity))) dt = min(dt, &
+            self%pair%neutral * self%ringing)
     end function longest
 
     !> Takes the block to what holds from the start of a step on.
@@ -221,6 +222,8 @@ contains
         if (piece /= self%block%equations%piece) then
             call self%block%equations%enter(piece)
             self%block%known = .false.
+            self%pair = dormand_prince
+            if (self%block%equations%rests) self%pair = tsitouras
         end if
         associate (eq => self%block%equations)
             if (eq%may_rest .and. .not. eq%rests .and. eq%phase == phase_stick) eq%phase &
@@ -325,7 +328,7 @@ contains
                 if (tried%error <= 1.0_dp) call look_at(block, t, self%weights(elastic), tried)
             end associate
         else
-            call dormand_prince_step(self%block%equations, t, tried%h, self%block%y, &
+            call explicit_step(self%pair, self%block%equations, t, tried%h, self%block%y, &
                 self%block%first, self%weights, tried%y, tried%last, tried%error, tried%stiffness)
         end if
         call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
@@ -473,7 +476,6 @@ contains
     subroutine choose_method(self, tried)
         class(continuous), intent(inout) :: self
         type(trial), intent(in) :: tried
-        real(dp), parameter :: bound = 3.25_dp   !! of Dormand and Prince's method, on the real axis
         integer, parameter :: most_stiff = 15, most_calm = 6, few_calm = 3
 
         if (self%block%equations%surface%traits%stiff) return
@@ -482,7 +484,7 @@ contains
             if (self%calm < few_calm) return
             self%implicit = .false.
         else
-            if (tried%stiffness > bound) then
+            if (tried%stiffness > self%pair%bound) then
                 self%stiff = self%stiff + 1
                 self%calm = 0
             else
