@@ -8,6 +8,7 @@ import shutil
 import signal
 import unittest
 
+from strict_build import release_only
 from test_chain import RUN, Chain
 from test_long_runs import LongRun
 from test_program import GOOD, INPUTS, LAWS, SPRINGS, namelist
@@ -236,6 +237,7 @@ class Refused(OwnConstants):
 
 
 class Resumed(LongRun):
+    @release_only
     def test_killed_runs_resume_to_the_same_bytes(self):
         for time in {('time', 'dt'): '2e-4'}, {('time', 'rtol'): '1e-4'}:
             self.stop_and_go(namelist({**RUN, ('time', 't_end'): '8', ('output', 'interval'): '2', ('output', 'checkpoint'): '0.02',
@@ -243,7 +245,7 @@ class Resumed(LongRun):
 
     def test_another_profile_is_another_input(self):
         (self.folder / 'profile.csv').write_text('block,mu_s\n1,0.4\n20,0.5\n')
-        text = namelist({**RUN, ('friction', 'mu_s'): "'@profile.csv'", ('time', 'rtol'): '1e-6', ('output', 'table_limit'): '2e-5',
+        text = namelist({**RUN, ('friction', 'mu_s'): "'@profile.csv'", ('time', 't_end'): '1', ('time', 'rtol'): '1e-6', ('output', 'table_limit'): '2e-5',
                          ('output', 'interval'): '1'})
         self.assertEqual(self.run_text(text, '--no-plot').returncode, 1)   # the table is full
         (self.folder / 'profile.csv').write_text('block,mu_s\n1,0.4\n20,0.51\n')

@@ -17,6 +17,7 @@ import unittest
 import xml.etree.ElementTree
 
 from field_reader import read_fields
+from strict_build import release_only
 
 PROGRAM = os.environ['STICKSLIP']
 ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault')
@@ -134,6 +135,7 @@ class FaultTest(unittest.TestCase):
 
 
 class Benchmark(FaultTest):
+    @release_only
     def test_bp1_has_the_events_of_other_codes(self):
         """78 m cells: the onsets are those of the community's codes at 25 m within a tenth of a year."""
         self.run_fault(str(INPUTS / 'fault_bp1.nml'), '--output', 'bp1', '--quiet')
@@ -446,6 +448,7 @@ class Laws(FaultTest):
         self.assertGreater(float(events[0]['peak_slip_rate']), 0.1)
         self.kill_and_resume(name, 0.5, 1, 1)
 
+    @release_only
     def test_later_subloading_events_follow_neither_rtol_nor_cells(self):
         """Steps that pass over the loss of stability begin events when rtol has it so."""
         onsets = []

@@ -2,6 +2,7 @@
 import math
 import unittest
 
+from strict_build import release_only
 from test_program import LAWS, Program, law_namelist, namelist
 
 
@@ -517,6 +518,7 @@ class ContinuousTime(Columns):
             work, unbalanced = self.summary(text.replace('damping = 0.01', 'damping = 1'), 'work of the drive', 'unbalanced')
             self.assertLess(abs(unbalanced), 1e-6 * work)
 
+    @release_only
     def test_the_stress_drop_grows_with_the_time_between_events(self):
         # d_c next to nothing: half a swing, damped, against mu_k p; then rest until K V T is the drop again, the strength being
         # mu = mu_s - (mu_s - mu_k) exp(-xi T)

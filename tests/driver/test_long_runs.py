@@ -8,6 +8,7 @@ import subprocess
 import time
 import unittest
 
+from strict_build import release_only
 from test_program import PROGRAM, Program, namelist
 
 FIXED = namelist({('time', 't_end'): '40', ('time', 'dt'): '2e-4', ('output', 'interval'): '10',
@@ -81,9 +82,11 @@ class StopAndGo(LongRun):
     def test_killed_fixed_steps_resume_to_the_same_bytes(self):
         self.stop_and_go(FIXED, signal.SIGKILL, 5)
 
+    @release_only
     def test_killed_adaptive_steps_resume_to_the_same_bytes(self):
         self.stop_and_go(ADAPTIVE, signal.SIGKILL, 5)
 
+    @release_only
     def test_interrupted_steps_resume_to_the_same_bytes(self):
         self.stop_and_go(ADAPTIVE, signal.SIGINT, 3)
 

@@ -9,6 +9,7 @@ import shutil
 import unittest
 from fractions import Fraction
 
+from strict_build import release_only
 from test_program import INPUTS, Program, namelist
 
 TIGHT = 1e-10
@@ -98,6 +99,7 @@ class RateAndState(Stability):
     def critical(self, mass, velocity):
         return (self.B - self.A) / self.D_C * (1 + mass * velocity**2 / (self.A * self.D_C))
 
+    @release_only
     def test_critical_stiffness_and_its_frequency(self):
         for evolution in ("'ageing'", "'slip'"):
             for mass, velocity in ((0.0, 1.0), (0.025, 1.0), (0.025, 2.0), (0.025, 0.1)):

@@ -12,6 +12,7 @@ import subprocess
 import time
 import unittest
 
+from strict_build import release_only
 from test_program import INPUTS, PROGRAM, Program, namelist
 
 COLUMNS = ('status,regime,events,late_events,period,stress_drop,peak_velocity,mean_force,energy_defect,'
@@ -415,6 +416,7 @@ class ShippedInputs(Sweep):
             values = [float(row[column]) for row in rows[:sticking]]
             self.assertEqual(values, sorted(values, reverse=True))
 
+    @release_only
     def test_stiffer_springs_and_faster_drives_slide_steadily(self):
         """On every other line of the map's grid."""
         text = re.sub(r'(values2?) = (.*)', lambda found: found[1] + ' = ' + ','.join(
