@@ -336,12 +336,13 @@ contains
     end subroutine attempt
 
     !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
-    !> sense of the traction, or slip between two ends would not be seen.
+    !> sense of the traction, and where it turns back from beyond zero traction, or slip between two
+    !> ends would not be seen.
     subroutine swing_on(self, t, tried)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t             !! [T]
         type(trial), intent(inout) :: tried   !! its length is given
-        real(dp), parameter :: far = 0.05_dp   !! part of the step
+        real(dp), parameter :: far = 1.0e-3_dp   !! part of the step
         real(dp) :: v_drive, turn
         logical :: failed
 
@@ -352,6 +353,10 @@ contains
                 if (turn > far * tried%h) tried%h = min(tried%h, turn)
             end if
             call self%free%go_on(tried%h, block%y, v_drive, block%first(memory), tried%y)
+            if (eq%sense * block%y(velocity) < 0.0_dp .and. eq%sense * tried%y(velocity) &
+                > 0.0_dp) then
+                call end_beyond_zero(self, v_drive, tried)
+            end if
             call eq%rates(t + tried%h, tried%y, tried%last, failed)
         end associate
         tried%error = 0.0_dp
@@ -359,6 +364,36 @@ contains
         call self%count_iterations(1)
         self%jumped = .false.
     end subroutine swing_on
+
+    !> Ends a step in which the block turns back where it does so, if its traction has changed its
+    !> side there.
+    subroutine end_beyond_zero(self, v_drive, tried)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: v_drive   !! [L/T]
+        type(trial), intent(inout) :: tried
+        integer, parameter :: most_tries = 40
+        real(dp), parameter :: close = 1.0e-12_dp
+        type(root_bracket) :: bracket
+        real(dp) :: y(unknowns), h, before
+        integer :: i
+
+        associate (block => self%block, sense => self%block%equations%sense)
+            bracket%high = tried%h
+            bracket%g_low = sense * block%y(velocity)
+            bracket%g_high = sense * tried%y(velocity)
+            h = bracket%guess()
+            do i = 1, most_tries
+                call self%free%go_on(h, block%y, v_drive, block%first(memory), y)
+                call bracket%take(h, sense * y(velocity))
+                before = h
+                h = bracket%guess()
+                if (abs(h - before) <= close * tried%h) exit
+            end do
+            if (sense * y(elastic) >= 0.0_dp) return
+        end associate
+        tried%h = before
+        tried%y = y
+    end subroutine end_beyond_zero
 
     !> What the error of each unknown is compared with.
     subroutine set_weights(self, t)

@@ -387,6 +387,42 @@ class ContinuousTime(Columns):
         run = self.run_columns(text + '&time t_end=6, rtol=1e-6 /\n')
         self.assertAlmostEqual(run['displacement'][-1], 10**2 / (2 * 0.3 * 9.8), delta=1e-4)   # the spring takes 5e-5
 
+    def test_a_swing_that_turns_back_from_beyond_zero_traction_slips_there(self):
+        # own integration of the rate equations; the drive turns back, and the traction follows with a swing
+        mass, damping, stiffness, pressure = 0.22271517813391495, 9.45411119576097e-4, 0.29654880580196913, 6.196072420702041
+        alpha, mu_s, mu_k, kappa, xi, m, speed = (3.5821407509404075, 0.30990858823653683, 0.175715557484935, 2.1541017020878632,
+                                                  3.7292312990149655e-3, 1.2355569279471057, 0.16081704156866258)
+        turn, end, step = 103.3522577647973, 140.0, 0.004
+
+        def rates(drive, x, v, u, mu):
+            sense = math.copysign(1, u)
+            r = min(1, max(abs(u) * alpha / (mu * pressure), 1e-300))
+            heal = xi * (mu_s - mu)
+            slip = max(0, (sense * alpha * v - r * heal * pressure)
+                       / (alpha - m * math.log(r) * mu * pressure - r * pressure * kappa * (mu - mu_k)))
+            return (v, (stiffness * (drive - x) - damping * v - alpha * u) / mass, v - sense * slip, heal - kappa * (mu - mu_k) * slip)
+
+        def follow(state, start, duration, drive):
+            n = math.ceil(duration / step)
+            h = duration / n
+            for i in range(n):
+                stages = [(0.0,) * 4]
+                for part in (0, 0.5, 0.5, 1):
+                    stages.append(rates(drive(start + (i + part) * h), *(y + part * h * k for y, k in zip(state, stages[-1]))))
+                state = [y + h / 6 * (a + 2 * (b + c) + d) for y, a, b, c, d in zip(state, *stages[1:])]
+            return state
+
+        state = follow([0.0, 0.0, 0.0, mu_s], 0.0, turn, lambda t: speed * t)
+        state = follow(state, turn, end - turn, lambda t: speed * (2 * turn - t))
+        run = self.run_columns(f"""
+&friction law='subloading', alpha_n=1000, alpha_t={alpha}, mu_s={mu_s}, mu_k={mu_k}, kappa={kappa}, xi={xi}, m={m} /
+&slider mass={mass}, stiffness={stiffness}, damping={damping}, normal_traction={pressure} /
+&drive velocity={speed}, {-speed}, duration={turn}, 100 /
+&time t_end={end}, rtol=1e-8 /
+""")
+        self.assertAlmostEqual(run['displacement'][-1] / state[0], 1, delta=1e-6)
+        self.assertAlmostEqual(run['mu'][-1], state[3], delta=1e-6)
+
     def test_the_error_of_a_free_block_follows_the_tolerance(self):
         # subloading friction that heals and a damper: a motion without a closed form
         end = []
