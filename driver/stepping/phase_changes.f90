@@ -41,10 +41,11 @@ contains
         real(dp), intent(out) :: g(switches)
 
         g = -1.0_dp
-        if (eq%rests .and. eq%phase == phase_slide) g(1) = -dy(slip)
-        if (eq%rests .and. eq%phase == phase_stick) g(:2) = [eq%slip_tendency(y), -eq%sense &
-            * y(elastic)]   ! or the traction changes its side
-        if (eq%rests) return
+        if (eq%rests) then
+            if (eq%phase == phase_slide) g(1) = -dy(slip)
+            if (eq%phase == phase_stick) g(:2) = [eq%slip_tendency(y), -eq%sense * y(elastic)]
+            return   ! 2: the traction changes its side
+        end if
         if (eq%across%mass > 0.0_dp) g(lifts) = merge(-1.0_dp, 1.0_dp, eq%phase == phase_open) &
             * (eq%open_below - eq%pressed_to(y))
         if (.not. eq%damper > 0.0_dp) then

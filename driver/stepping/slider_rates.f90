@@ -193,25 +193,14 @@ contains
         real(dp), intent(in) :: y(controlled)   !! the others do not matter
         real(dp), intent(out) :: dy(unknowns)
         logical, intent(out) :: failed          !! slip has no rate: it jumps
-
-        if (self%rests .and. self%phase /= phase_open) then
-            call swinging_rates(self, y, dy, failed)
-        else
-            call any_rates(self, t, y, dy, failed)
-        end if
-    end subroutine rates
-
-    pure subroutine any_rates(self, t, y, dy, failed)
-        class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: t, y(controlled)
-        real(dp), intent(out) :: dy(unknowns)
-        logical, intent(out) :: failed
         type(contact_motion) :: contact
         real(dp) :: force, v_drive, pressure, pressure_rate
 
         call inputs(self, t, y, v_drive, pressure, pressure_rate)
         force = pull(self, y)
-        if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
+        if (self%rests .and. self%phase /= phase_open) then
+            call swinging_contact(self, y, contact, failed)
+        else if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
             call damped_contact(self, y, force, v_drive, pressure, pressure_rate, contact, failed)
         else if (self%rigid .and. self%phase /= phase_open) then
             if (self%follows_traction()) then
@@ -250,7 +239,7 @@ contains
             dy(dissipated) = dy(dissipated) + self%damper * contact%elastic**2
         end if
         if (self%across%mass > 0.0_dp) call move_across(self, t, y, dy)
-    end subroutine any_rates
+    end subroutine rates
 
     !> The motion across the interface, which friction does not act on.
     pure subroutine move_across(self, t, y, dy)
@@ -324,38 +313,25 @@ contains
 
     !> The same of a surface with phases of rest, most steps of which are short: without what such a
     !> block does not have.
-    pure subroutine swinging_rates(self, y, dy, failed)
+    pure subroutine swinging_contact(self, y, contact, failed)
         class(slider_equations), intent(in) :: self
         real(dp), intent(in) :: y(controlled)
-        real(dp), intent(out) :: dy(unknowns)
+        type(contact_motion), intent(inout) :: contact
         logical, intent(out) :: failed
         type(law_state) :: changes
-        real(dp) :: force, traction, sense, slip_rate
+        real(dp) :: sense
 
-        force = self%stiffness * y(extension)
-        traction = self%alpha * y(elastic)
-        sense = sign(1.0_dp, traction)
-        if (.not. abs(traction) > 0.0_dp) sense = self%sense_of(y(velocity))
         failed = .false.
-        slip_rate = 0.0_dp
-        if (self%phase == phase_slide) call slide(self, y, sense, slip_rate, failed)
-        failed = failed .or. max(abs(y(velocity)), abs(slip_rate)) > too_fast
-        if (failed) then
-            dy = 0.0_dp
-            return
-        end if
+        contact%traction = self%alpha * y(elastic)
+        contact%velocity = y(velocity)
+        sense = sign(1.0_dp, contact%traction)
+        if (.not. abs(contact%traction) > 0.0_dp) sense = self%sense_of(y(velocity))
+        if (self%phase == phase_slide) call slide(self, y, sense, contact%slip, failed)
+        contact%elastic = y(velocity) - sense * contact%slip
         changes = self%surface%law%state_rates(law_state(mu=y(memory), r=0.0_dp), load_rates(&
-            0.0_dp, 0.0_dp, self%alpha, 0.0_dp, 0.0_dp, .true.), slip_rate)
-        dy(extension) = self%constant_velocity - y(velocity)
-        dy(velocity) = (force - self%damping * y(velocity) - self%area * traction) / self%mass
-        dy(elastic) = y(velocity) - sense * slip_rate
-        dy(memory) = changes%mu
-        dy(ratio:away) = 0.0_dp
-        dy(slip) = slip_rate
-        dy(drive_work) = force * self%constant_velocity
-        dy(damped) = self%damping * y(velocity)**2
-        dy(dissipated) = abs(traction) * slip_rate
-    end subroutine swinging_rates
+            0.0_dp, 0.0_dp, self%alpha, 0.0_dp, 0.0_dp, .true.), contact%slip)
+        contact%memory = changes%mu
+    end subroutine swinging_contact
 
     !> Slip rate of such a surface; below 0, it is about to rest.
     pure subroutine slide(self, y, sense, rate, jumps)
