@@ -27,17 +27,23 @@ contains
         real(wp), intent(out) :: constants(lanes, n_constants)
         integer(c_int), intent(out) :: options            !! sum of those that a point has
         integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
-        integer(c_int64_t) :: wrong(lanes), any_wrong
-        integer :: i, k
+        logical :: fine, any_left
+        integer :: used, i, k
 
-        call compare(source, stride, count, props, wrong)
-        do k = 1, c_own + source%n_own - 1
-            if (source%place(k) == 0 .or. count < lanes) constants(:, k) = source%value(k)
-            if (source%place(k) > 0) call copy_column(count, props(:count, source%place(k)), &
-                source%lower(k) > 0.0_wp, source%value(k), constants(:, k), wrong)
-        end do
-        do k = c_squeeze, c_own + source%n_own - 1
-            call follow_rules(source, k, constants, wrong)
+        used = c_own + source%n_own - 1
+        left = 0
+        call copy_points(source, stride, count, props, constants, fine)
+        any_left = .not. fine
+        if (any_left) then   ! which of them?
+            do i = 1, count
+                call copy_points(source, stride, 1, props(i, 1), constants(i, 1), fine)
+                if (fine) cycle
+                left(i) = 1
+                constants(i, :used) = source%value(:used)
+            end do
+        end if
+        do k = 1, used
+            constants(count + 1:, k) = source%value(k)
         end do
         constants(:, c_mu_0) = -1.0_wp   ! no law admits it: virgin points go one by one
         options = 0
@@ -51,87 +57,99 @@ contains
                 end do
             end if
         end if
-        left = 0
-        any_wrong = 0
+        if (.not. any_left) return
         do i = 1, lanes
-            any_wrong = ior(any_wrong, wrong(i))
-        end do
-        if (any_wrong == 0) return
-        left = merge(1_c_int, 0_c_int, wrong /= 0)
-        do k = 1, c_own + source%n_own - 1
-            where (left > 0) constants(:, k) = source%value(k)
+            if (left(i) > 0) constants(i, :used) = source%value(:used)
         end do
     end subroutine copy_constants
 
-    !> One constant of all points; one that is not of ordinary size is replaced.
-    pure subroutine copy_column(count, from, not_zero, value, to, wrong)
-        integer, intent(in) :: count
-        real(wp), intent(in) :: from(count)
-        logical, intent(in) :: not_zero
-        real(wp), intent(in) :: value   !! that replaces it
-        real(wp), intent(inout) :: to(lanes)
-        integer(c_int64_t), intent(inout) :: wrong(lanes)   !! not 0 for what cannot be taken
-        integer(c_int64_t) :: number, zero, ordinary, low, high, other
-        integer :: i
-
-        zero = merge(bits(most), 0_c_int64_t, not_zero)   ! that is refused, too
-        low = bits(least)
-        high = bits(most)
-        other = bits(value)
-        do i = 1, count
-            number = bits(from(i))
-            ! all bits or none
-            ordinary = iand(shifta(low - number, 63), shifta(number - high, 63))
-            if (number == zero) ordinary = -1
-            to(i) = transfer(ior(iand(number, ordinary), iand(other, not(ordinary))), value)
-            wrong(i) = ior(wrong(i), not(ordinary))
-        end do
-    end subroutine copy_column
-
-    !> Constants that have to be the same at all points, in one pass. Compares bits: silent where a
-    !> comparison with NaN raises an exception.
-    pure subroutine compare(source, stride, count, props, wrong)
+    !> Those of `n` points, and whether lanes can take all of them.
+    pure subroutine copy_points(source, stride, n, props, constants, fine)
         type(constants_source), intent(in) :: source
         integer(c_int64_t), intent(in) :: stride
-        integer, intent(in) :: count
+        integer, intent(in) :: n
         real(wp), intent(in) :: props(stride, *)
-        integer(c_int64_t), intent(out) :: wrong(lanes)
-        integer :: i
+        real(wp), intent(inout) :: constants(lanes, *)
+        logical, intent(out) :: fine
+        integer(c_int64_t) :: wrong, beyond   !! not 0, below 0 for what cannot be taken
+        integer :: k, i
 
         wrong = 0
-        associate (at => source%choice, value => source%chosen)
-            do i = 1, count
-                wrong(i) = ior(ior(ior(differ(props(i, at(1)), value(1)), &
-                    differ(props(i, at(2)), value(2))), &
-                    ior(differ(props(i, at(3)), value(3)), differ(props(i, at(4)), value(4)))), &
-                    ior(differ(props(i, at(5)), value(5)), differ(props(i, at(6)), value(6))))
-            end do
-        end associate
+        beyond = 0
+        do k = 1, source%n_choices
+            call compare(n, props(:n, source%choice(k)), source%chosen(k), wrong)
+        end do
+        do k = 1, c_own + source%n_own - 1
+            if (source%place(k) > 0) then
+                call copy_column(n, props(:n, source%place(k)), source%lower(k), source%upper(k), &
+                    constants(:n, k), beyond)
+            else
+                do i = 1, n
+                    constants(i, k) = source%value(k)
+                end do
+            end if
+        end do
+        do k = c_own, c_own + source%n_own - 1
+            if (source%not_below(k) > 0) call order(n, constants(:n, source%not_below(k)), &
+                constants(:n, k), beyond)
+            if (source%not_above(k) > 0) call order(n, constants(:n, k), &
+                constants(:n, source%not_above(k)), beyond)
+        end do
+        fine = wrong == 0 .and. beyond >= 0
+    end subroutine copy_points
+
+    !> Constants that have to be the same at all points. Compares bits: silent where a comparison
+    !> with NaN raises an exception.
+    pure subroutine compare(n, values, chosen, wrong)
+        integer, intent(in) :: n
+        real(wp), intent(in) :: values(n), chosen
+        integer(c_int64_t), intent(inout) :: wrong
+        integer :: i
+
+        do i = 1, n
+            wrong = ior(wrong, ieor(bits(values(i)), bits(chosen)))
+        end do
     end subroutine compare
 
-    !> 0 for the same number.
-    elemental function differ(x, y)
-        real(wp), intent(in) :: x, y
-        integer(c_int64_t) :: differ
+    !> One constant: of ordinary size and within its bounds, or zero, where that is one.
+    pure subroutine copy_column(n, from, lower, upper, to, beyond)
+        integer, intent(in) :: n
+        real(wp), intent(in) :: from(n), lower, upper
+        real(wp), intent(inout) :: to(n)
+        integer(c_int64_t), intent(inout) :: beyond
+        integer(c_int64_t) :: low, high, number, out_of_bounds
+        integer :: i
 
-        differ = ieor(bits(x), bits(y))
-    end function differ
+        low = max(bits(lower), bits(least))
+        high = min(bits(upper), bits(most))
+        if (lower > 0.0_wp) then
+            do i = 1, n
+                number = bits(from(i))
+                beyond = ior(beyond, ior(number - low, high - number))
+                to(i) = from(i)
+            end do
+        else
+            do i = 1, n
+                number = bits(from(i))
+                out_of_bounds = ior(number - low, high - number)
+                if (number == 0) out_of_bounds = 0
+                beyond = ior(beyond, out_of_bounds)
+                to(i) = from(i)
+            end do
+        end if
+    end subroutine copy_column
 
-    !> Rules of module friction_law_constants that lanes can break although their constants are of
-    !> ordinary size.
-    pure subroutine follow_rules(source, k, constants, wrong)
-        type(constants_source), intent(in) :: source
-        integer, intent(in) :: k   !! column
-        real(wp), intent(in) :: constants(lanes, n_constants)
-        integer(c_int64_t), intent(inout) :: wrong(lanes)
+    !> Rules of module friction_law_constants: that one constant is not above another.
+    pure subroutine order(n, lesser, greater, beyond)
+        integer, intent(in) :: n
+        real(wp), intent(in) :: lesser(n), greater(n)
+        integer(c_int64_t), intent(inout) :: beyond
+        integer :: i
 
-        if (source%lower(k) > least) where (constants(:, k) < source%lower(k)) wrong = 1
-        if (source%upper(k) < most) where (constants(:, k) > source%upper(k)) wrong = 1
-        if (source%not_below(k) > 0) where (constants(:, k) < constants(:, source%not_below(k))) &
-            wrong = 1
-        if (source%not_above(k) > 0) where (constants(:, k) > constants(:, source%not_above(k))) &
-            wrong = 1
-    end subroutine follow_rules
+        do i = 1, n
+            beyond = ior(beyond, bits(greater(i)) - bits(lesser(i)))
+        end do
+    end subroutine order
 
     !> A number that stands for no option where a point says 0; and whether a point has the option.
     pure subroutine find_option(values, none, option, options)
@@ -144,8 +162,16 @@ contains
 
         others = 0
         do i = 1, lanes
+            others = ior(others, bits(values(i)))
+        end do
+        if (others == 0) then
+            values = none
+            return
+        end if
+        others = 0
+        do i = 1, lanes
             values(i) = merge(values(i), none, values(i) > 0.0_wp)
-            others = ior(others, differ(values(i), none))
+            others = ior(others, ieor(bits(values(i)), bits(none)))
         end do
         if (others /= 0) options = options + option
     end subroutine find_option
