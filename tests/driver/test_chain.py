@@ -12,6 +12,7 @@ import subprocess
 import unittest
 import xml.etree.ElementTree
 
+from drawing import needs_gnuplot
 from field_reader import read_fields
 from strict_build import release_only
 from test_long_runs import LongRun
@@ -123,9 +124,8 @@ class Motion(Chain):
         self.run_chain({('output', 'fields'): '500', ('chain', 'displacement_scatter'): '0.1'})
         self.assertGreater(max(max(slips) - min(slips) for slips in self.slips()), 0.1)
 
+    @needs_gnuplot
     def test_the_picture_of_the_catalogue_tells_the_b_value(self):
-        if shutil.which('gnuplot') is None:
-            self.skipTest('gnuplot is not installed')
         text = namelist({**RUN, ('chain', 'scatter'): '0.3'})
         result = self.run_text(text)
         self.assertEqual((result.returncode, result.stderr), (0, ''))
@@ -449,6 +449,7 @@ class Catalogue(Chain):
         self.assertEqual(len(list((self.folder / 'case_out').glob('case_fields_0*'))), 1)
         self.assertEqual(self.fields(700)[-1][0], 1.0)
 
+    @needs_gnuplot
     def test_a_picture_of_fields_is_drawn_from_few_points_and_keeps_the_largest(self):
         (self.folder / 'case.nml').write_text(namelist({
             **RUN, ('chain', 'n_blocks'): '700', ('output', 'fields'): '4'}))
@@ -458,6 +459,7 @@ class Catalogue(Chain):
         self.assertLess(len(cells), 1e5)
         self.assertEqual(max(float(cell[2]) for cell in cells), max(max(rates) for _, rates, _, _ in self.fields(700)))
 
+    @needs_gnuplot
     def test_pictures_are_drawn(self):
         (self.folder / 'case.nml').write_text(namelist({**RUN, ('output', 'fields'): '50'}))
         result = self.run_program('run', 'case.nml')

@@ -8,6 +8,7 @@ import shutil
 import signal
 import unittest
 
+from drawing import needs_gnuplot
 from strict_build import release_only
 from test_chain import RUN, Chain
 from test_long_runs import LongRun
@@ -163,7 +164,7 @@ class Constants(OwnConstants):
         self.run_chain({('time', 't_end'): '0.1'})
         self.assertFalse((self.folder / 'case_out/case_blocks.csv').exists())
 
-    @unittest.skipIf(shutil.which('gnuplot') is None, 'gnuplot is not installed')
+    @needs_gnuplot
     def test_a_picture_shows_the_blocks(self):
         result = self.run_text(namelist({**RUN, ('chain', 'kappa_scatter'): '0.2', ('chain', 'scatter'): '0.2',
                                          ('output', 'length_unit'): "'mm'", ('time', 't_end'): '0.1'}))

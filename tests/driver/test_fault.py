@@ -16,6 +16,7 @@ import time
 import unittest
 import xml.etree.ElementTree
 
+from drawing import needs_gnuplot
 from field_reader import read_fields
 from strict_build import release_only
 
@@ -418,7 +419,7 @@ class Output(FaultTest):
             self.assertLess(abs(loading - sum(others)), allowed * loading)
             self.assertGreater(min(others), 1e-4 * loading if text not in (PLANE, HALF) else 0)
 
-    @unittest.skipUnless(shutil.which('gnuplot'), 'no gnuplot')
+    @needs_gnuplot
     def test_picture_is_drawn(self):
         for t_end in ('1.0e8', '1.0e9'):   # before the first contour, and after it
             name = self.write(SMALL.replace('1.0e10', t_end))

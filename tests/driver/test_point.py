@@ -12,6 +12,8 @@ import tempfile
 import time
 import unittest
 
+from drawing import needs_gnuplot
+
 PROGRAM = os.environ['STICKSLIP']
 INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
 FRICTION = ("&friction law='subloading', alpha_n=1000, alpha_t=2000, mu_s=0.4, mu_k=0.2, kappa=10,"
@@ -189,9 +191,8 @@ class GoodInput(Point):
         self.assertLess(abs(fine[3]), 0.15 * abs(coarse[3]))   # first order
         self.assertLess(abs(fine[3]), 1e-3 * fine[0])
 
+    @needs_gnuplot
     def test_picture_is_drawn_with_its_script_beside_it(self):
-        if shutil.which('gnuplot') is None:
-            self.skipTest('gnuplot is not installed')
         result = self.run_text(namelist())
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         self.assertEqual((self.folder / 'case_out/case.png').read_bytes()[:4], b'\x89PNG')

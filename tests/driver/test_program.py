@@ -13,6 +13,8 @@ import subprocess
 import tempfile
 import unittest
 
+from drawing import needs_gnuplot
+
 PROGRAM = os.environ['STICKSLIP']
 FAULT_ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault').exists()
 INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
@@ -164,9 +166,8 @@ class GoodInput(Program):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, '', ''))
         self.assertTrue((self.folder / 'deep/er dir/case.csv').exists())
 
+    @needs_gnuplot
     def test_picture_is_drawn_with_its_script_beside_it(self):
-        if shutil.which('gnuplot') is None:
-            self.skipTest('gnuplot is not installed')
         (self.folder / "it's a case.nml").write_text(namelist())
         result = self.run_program('run', "it's a case.nml")
         self.assertEqual((result.returncode, result.stderr), (0, ''))

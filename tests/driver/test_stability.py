@@ -5,10 +5,10 @@ program's way to it is used. STICKSLIP names the program.
 """
 import itertools
 import math
-import shutil
 import unittest
 from fractions import Fraction
 
+from drawing import needs_gnuplot
 from strict_build import release_only
 from test_program import INPUTS, Program, namelist
 
@@ -365,7 +365,7 @@ class Boundary(Stability):
             _, weakening, c, b = Subloading.terms(kappa, 10.0, 1.0)
             self.assert_near(0.01 * c + 0.01 * stiffness / b / (1e-3 * b * c + 0.01), weakening)
 
-    @unittest.skipUnless(shutil.which('gnuplot'), 'gnuplot is not installed')
+    @needs_gnuplot
     def test_the_picture_is_drawn(self):
         for change in ({}, {('sweep', 'key'): "'slider%mass'", ('sweep', 'values'): '1e-3, 1e-1'}, {('friction', 'mu_k'): '0.4'}):
             result = self.run_text(namelist(change), verb='stability')

@@ -12,6 +12,7 @@ import subprocess
 import time
 import unittest
 
+from drawing import needs_gnuplot
 from strict_build import release_only
 from test_program import INPUTS, PROGRAM, Program, namelist
 
@@ -127,9 +128,8 @@ class Table(Sweep):
 
 
 class Picture(Sweep):
+    @needs_gnuplot
     def test_pictures_are_drawn_also_where_nothing_sticks_or_all_has_failed(self):
-        if shutil.which('gnuplot') is None:
-            self.skipTest('gnuplot is not installed')
         failing = {('time', 'max_iterations'): '1'}
         for number, text in enumerate((
                 sweep('drive%velocity', '1'), sweep('drive%velocity', '-1, 0, 1000'), namelist(TWO_KEYS),
@@ -141,9 +141,8 @@ class Picture(Sweep):
             self.assertTrue((out / 'case_sweep.gp').exists())
 
 
+    @needs_gnuplot
     def test_each_cell_of_the_map_lies_at_the_values_of_its_row(self):
-        if shutil.which('gnuplot') is None:
-            self.skipTest('gnuplot is not installed')
         self.run_text(namelist({**TWO_KEYS, ('time', 't_end'): '5', ('slider', 'damping'): '0.5',
                                 ('sweep', 'values'): '0.5, 1, 2000'}), verb='sweep')
         script = (self.folder / 'case_out/case_sweep.gp').read_text()
