@@ -62,6 +62,7 @@ class Parents(unittest.TestCase):
             library = next((self.folder / 'c').rglob(f'lib{name}.so'))
             self.call(sys.executable, '-c', f'import ctypes, os; ctypes.CDLL({str(library)!r}, mode=os.RTLD_NOW)')
 
+    @unittest.skipIf('CXX' not in os.environ and shutil.which('c++') is None, 'no C++ compiler')
     def test_a_c_plus_plus_project(self):
         self.check('cpp', *PLAIN)
 
