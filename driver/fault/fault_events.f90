@@ -1,7 +1,7 @@
 !> Events: times in which a part of the fault slips faster than `seismic_rate`.
 module fault_events
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
-    use fault_problem, only : fault, fault_state
+    use fault_problem, only : fault, fault_state, step_start
     use processes, only : team
     implicit none
     private
@@ -45,33 +45,29 @@ contains
     end subroutine start
 
     !> Follows a step; `ended` tells that an event has, which is then `self%event`.
-    subroutine see(self, here, together, time_before, state, ended)
+    subroutine see(self, here, together, before, state, ended)
         class(event_watch), intent(inout) :: self
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
-        real(dp), intent(in) :: time_before         !! start of the step [T]
-        type(fault_state), intent(in) :: state      !! its end
+        type(step_start), intent(in) :: before
+        type(fault_state), intent(in) :: state      !! the end of the step
         logical, intent(out) :: ended
-        real(dp) :: rate, rate_before, crossing, part
+        real(dp) :: rate, rate_before, crossing
 
         rate_before = self%largest_rate
         rate = together%largest(maxval(state%rate))
         self%largest_rate = rate
         ended = .false.
         if ((rate > here%plan%seismic_rate) .neqv. self%on) then
-            ! the logarithm of the largest rate is taken as linear in the step; a run may start
-            ! in an event
-            part = 0.0_dp
-            if ((rate_before > here%plan%seismic_rate) .eqv. self%on) part = max(0.0_dp, &
-                min(1.0_dp, log(here%plan%seismic_rate / max(rate_before, tiny(rate))) &
-                / log(max(rate, tiny(rate)) / max(rate_before, tiny(rate)))))
-            crossing = time_before + (state%time - time_before) * part
+            crossing = before%time   ! a run may start in an event
+            if ((rate_before > here%plan%seismic_rate) .eqv. self%on) crossing = &
+                crossing_time(here, together, before, state, self%on)
             if (self%on) then
-                call self%finish_event(here, together, crossing, state)
+                call self%finish_event(here, together, crossing, before%slip_at(crossing, state))
                 ended = .true.
             else
                 self%on = .true.
-                self%slip_before = state%slip - state%rate * (state%time - crossing)
+                self%slip_before = before%slip_at(crossing, state)
                 self%took_part = 0.0_dp
                 self%event = fault_event(onset=crossing)
                 self%event%first_cell = fastest_cell(here, together, state, rate)
@@ -81,6 +77,46 @@ contains
         self%event%peak_rate = max(self%event%peak_rate, rate_before, rate)
         where (state%rate > here%plan%seismic_rate) self%took_part = 1.0_dp
     end subroutine see
+
+    !> When the first cell exceeds the seismic rate in a step, or the last one no longer does: by
+    !> the cubic of its slip, whose rate comes to a rate between those of both ends once.
+    function crossing_time(here, together, before, state, falls) result(time)
+        type(fault), intent(in) :: here
+        type(team), intent(in) :: together
+        type(step_start), intent(in) :: before
+        type(fault_state), intent(in) :: state   !! at the end of the step
+        logical, intent(in) :: falls             !! the largest rate does
+        real(dp) :: time
+        real(dp) :: dt, part(here%n)
+
+        dt = state%time - before%time
+        part = part_until(before%rate, state%rate, (state%slip - before%slip) / dt, &
+            here%plan%seismic_rate)
+        if (falls) then
+            part = merge(part, 0.0_dp, before%rate > here%plan%seismic_rate)
+            time = before%time + dt * together%largest(maxval(part))
+        else
+            part = merge(part, 1.0_dp, state%rate > here%plan%seismic_rate)
+            time = before%time - dt * together%largest(maxval(-part))
+        end if
+    end function crossing_time
+
+    !> Part of a step after which its rate is a number between those of its ends, the rate being
+    !> the parabola that these and their mean tell.
+    elemental function part_until(first, last, mean, rate) result(part)
+        real(dp), intent(in) :: first, last, mean, rate
+        real(dp) :: part
+        real(dp) :: a, b, c, q
+
+        a = 3.0_dp * (first + last - 2.0_dp * mean)
+        b = 6.0_dp * mean - 4.0_dp * first - 2.0_dp * last
+        c = first - rate
+        q = -0.5_dp * (b + sign(sqrt(max(b**2 - 4.0_dp * a * c, 0.0_dp)), b))
+        part = 0.0_dp
+        if (abs(q) > 0.0_dp) part = c / q
+        if (.not. (part >= 0.0_dp .and. part <= 1.0_dp) .and. abs(a) > 0.0_dp) part = q / a
+        part = max(0.0_dp, min(1.0_dp, part))
+    end function part_until
 
     !> Number of the cell, from 1, along strike first; of several the first one.
     function fastest_cell(here, together, state, rate) result(number)
@@ -96,17 +132,17 @@ contains
         number = together%lowest(number)
     end function fastest_cell
 
-    subroutine finish_event(self, here, together, time, state)
+    subroutine finish_event(self, here, together, time, slip_then)
         class(event_watch), intent(inout) :: self
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         real(dp), intent(in) :: time
-        type(fault_state), intent(in) :: state
+        real(dp), intent(in) :: slip_then(:)   !! at that time [L]
         real(dp) :: slip(here%n), cells
 
         self%on = .false.
         self%events = self%events + 1
-        slip = state%slip - self%slip_before
+        slip = slip_then - self%slip_before
         self%event%duration = time - self%event%onset
         self%event%largest_slip = together%largest(maxval(slip))
         cells = here%part%row_sums(together, self%took_part)

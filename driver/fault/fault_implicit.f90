@@ -132,7 +132,8 @@ contains
         end do
         self%motion(:, 1) = 0.0_dp
         self%rate = state%rate
-        self%resolved = 0.5_dp * max(here%cohesive_length, here%plan%dz()) / here%plan%wave_speed
+        self%resolved = 0.5_dp * min(max(here%cohesive_length, here%plan%dz()), here%plan%width) &
+            / here%plan%wave_speed   ! where nothing weakens that length has no bound
         self%force_scale = together%largest(maxval(here%pressure))
         if (.not. state%dt > 0.0_dp) state%dt = self%resolved
     end subroutine begin

@@ -13,7 +13,7 @@ module fault_problem
     implicit none
     private
 
-    public :: fault, fault_state
+    public :: fault, fault_state, step_start
 
     type :: fault
         type(fault_plan) :: plan
@@ -44,7 +44,29 @@ module fault_problem
                                                !! friction its logarithm
     end type fault_state
 
+    !> Where a step began.
+    type :: step_start
+        real(dp) :: time = 0.0_dp
+        real(dp), allocatable :: slip(:), rate(:)
+    contains
+        procedure :: slip_at
+    end type step_start
+
 contains
+
+    !> Slip at a time within a step, by the cubic through both ends.
+    pure function slip_at(self, time, state) result(slip)
+        class(step_start), intent(in) :: self
+        real(dp), intent(in) :: time
+        type(fault_state), intent(in) :: state   !! at the end of the step
+        real(dp) :: slip(size(self%slip))
+        real(dp) :: dt, u
+
+        dt = state%time - self%time
+        u = (time - self%time) / dt
+        slip = self%slip + u**2 * (3.0_dp - 2.0_dp * u) * (state%slip - self%slip) + dt * u &
+            * (1.0_dp - u) * ((1.0_dp - u) * self%rate - u * state%rate)
+    end function slip_at
 
     subroutine create(self, plan, together)
         class(fault), intent(inout) :: self

@@ -3,7 +3,7 @@
 module fault_recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_events, only : event_watch, fault_event
-    use fault_problem, only : fault, fault_state
+    use fault_problem, only : fault, fault_state, step_start
     use number_text, only : full_row, whole_text
     use processes, only : team
     use result_files, only : of_run, remove_results
@@ -22,8 +22,7 @@ module fault_recorder
         character(len=:), allocatable :: base    !! of the files' names, with the directory
         integer, allocatable :: cells(:)         !! of the stations; 0: on another process
         real(dp) :: next_contour = 0.0_dp        !! time [T]
-        real(dp), allocatable :: slip_before(:), rate_before(:)   !! at the start of the step
-        real(dp) :: time_before = 0.0_dp
+        type(step_start) :: before               !! the last step's
         logical :: writes = .false.              !! this process does
         logical, private :: draws_contours = .false.
     contains
@@ -47,8 +46,7 @@ contains
                 i = 1, size(plan%station_z))]
             self%draws_contours = plan%nx == 1 .and. plan%contours(1) > 0.0_dp
         end associate
-        allocate (self%stations(size(self%cells)), self%slip_before(here%n), &
-            self%rate_before(here%n))
+        allocate (self%stations(size(self%cells)))
     end subroutine prepare
 
     !> Begins the files of a new run.
@@ -128,7 +126,7 @@ contains
         self%next_contour = here%plan%contours(1)
     end subroutine begin
 
-    !> A step: from `slip_before`, `rate_before`, `time_before` to the state.
+    !> A step: from `before` to the state.
     subroutine see(self, here, together, state, watch, ended)
         class(recorder), intent(inout) :: self
         type(fault), intent(in) :: here
@@ -143,7 +141,8 @@ contains
         if (self%draws_contours) call self%write_contours(here, together, state, watch, ended)
     end subroutine see
 
-    !> Where the run fails: its last row is its last state.
+    !> Where the run ends before `t_end`: its last row is its last state. One that is resumed goes
+    !> on from its checkpoint, without that row.
     subroutine show_last(self, here, together, state, watch)
         class(recorder), intent(inout) :: self
         type(fault), intent(in) :: here
@@ -151,8 +150,8 @@ contains
         type(fault_state), intent(in) :: state
         type(event_watch), intent(in) :: watch
 
-        if (mod(state%steps, int(here%plan%interval, int64)) /= 0) call self%write_rows(here, &
-            together, state, watch)
+        if (mod(state%steps, int(here%plan%interval, int64)) /= 0 &
+            .and. state%time < here%plan%t_end) call self%write_rows(here, together, state, watch)
     end subroutine show_last
 
     subroutine write_rows(self, here, together, state, watch)
@@ -215,7 +214,7 @@ contains
         real(dp) :: last
 
         in_event = watch%on .or. ended
-        if (in_event .and. watch%event%onset >= self%time_before) then
+        if (in_event .and. watch%event%onset >= self%before%time) then
             call self%contours_until(here, together, state, .false., watch%event%onset)
             self%next_contour = watch%event%onset
         end if
@@ -234,18 +233,15 @@ contains
         type(fault_state), intent(in) :: state   !! at the end of the step
         logical, intent(in) :: in_event
         real(dp), intent(in) :: last             !! [T]
-        real(dp) :: dt, u, own(here%n)
+        real(dp) :: u, own(here%n)
         real(dp), dimension(here%plan%nz) :: slip, rate, rate_before
         integer :: k
 
-        dt = state%time - self%time_before
         do while (self%next_contour <= last)
-            u = (self%next_contour - self%time_before) / dt
-            own = self%slip_before + u**2 * (3.0_dp - 2.0_dp * u) * (state%slip &
-                - self%slip_before) + dt * u * (1.0_dp - u) * ((1.0_dp - u) * self%rate_before &
-                - u * state%rate)
+            u = (self%next_contour - self%before%time) / (state%time - self%before%time)
+            own = self%before%slip_at(self%next_contour, state)
             call together%gather(own, here%part%counts, slip)
-            call together%gather(self%rate_before, here%part%counts, rate_before)
+            call together%gather(self%before%rate, here%part%counts, rate_before)
             call together%gather(state%rate, here%part%counts, rate)
             rate = (1.0_dp - u) * log10_of(rate_before) + u * log10_of(rate)
             do k = 1, here%plan%nz, here%plan%contour_stride()

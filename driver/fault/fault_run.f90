@@ -7,7 +7,7 @@ module fault_run
     use fault_fields, only : fault_field_file
     use fault_explicit, only : explicit_steps
     use fault_implicit, only : implicit_steps
-    use fault_problem, only : fault, fault_state
+    use fault_problem, only : fault, fault_state, step_start
     use fault_recorder, only : recorder
     use fault_settings, only : fault_plan
     use fault_stepper, only : stepper
@@ -113,16 +113,13 @@ contains
                 by_lines=together%members > 1)
             last = seconds()
             do while (state%time < plan%t_end .and. len(problem) == 0)
-                records%time_before = state%time
-                records%slip_before = state%slip
-                records%rate_before = state%rate
+                records%before = step_start(time=state%time, slip=state%slip, rate=state%rate)
                 call live%steps%step(live%here, together, state, sound)
                 if (.not. sound) then
                     problem = 'at time ' // text_of(state%time) // ': no step is short enough'
-                    call records%show_last(live%here, together, state, live%watch)
                     exit
                 end if
-                call live%watch%see(live%here, together, records%time_before, state, ended)
+                call live%watch%see(live%here, together, records%before, state, ended)
                 call records%see(live%here, together, state, live%watch, ended)
                 if (plan%fields > 0) then
                     if (mod(state%steps, int(plan%fields, int64)) == 0) call &
@@ -132,6 +129,7 @@ contains
                 call look(live, together, last, problem)
             end do
             call bar%clear()
+            if (len(problem) > 0) call records%show_last(live%here, together, state, live%watch)
         end associate
     end subroutine go
 

@@ -320,7 +320,7 @@ class Restart(FaultTest):
         damaged[len(damaged) // 2] ^= 4
         checkpoint.write_bytes(damaged)
         self.assertIn('damaged', self.run_fault(name, '--resume', expect=1).stderr)
-        checkpoint.unlink()
+        checkpoint.unlink(missing_ok=True)
         self.assertIn('no checkpoint', self.run_fault(name, '--resume', expect=1).stderr)
 
 
@@ -418,6 +418,31 @@ class Output(FaultTest):
             loading, *others = (float(last[name]) for name in ('loading_work', 'elastic_energy', 'dissipated', 'radiated'))
             self.assertLess(abs(loading - sum(others)), allowed * loading)
             self.assertGreater(min(others), 1e-4 * loading if text not in (PLANE, HALF) else 0)
+
+    def test_the_last_row_is_the_last_state_however_a_run_ends(self):
+        """Waves so fast that slip takes less than the time's round-off; Ctrl-C, twice."""
+        tables = []
+        for steps in (1, 10**6):
+            text = SMALL.replace('3464', '1e12').replace('checkpoint', f'interval = {steps}, checkpoint')
+            self.assertIn('no step is short enough', self.run_fault(self.write(text), '--quiet', expect=1).stderr)
+            tables.append([list(self.rows(f'case_out/case_{table}.csv').values()) for table in ('global', 'station_1')])
+        for all_rows, rows in zip(*tables):
+            self.assertTrue(rows == [all_rows[0], all_rows[-1]])
+        name = self.write(SMALL.replace('1.0e10', '1.0e13').replace('checkpoint', 'interval = 1000000000, checkpoint'))
+        checkpoint, written = self.place / 'case_out' / 'case.checkpoint', 0
+        checkpoint.unlink(missing_ok=True)
+        times = [0.0]
+        for more in ((), ('--resume',)):
+            run = subprocess.Popen(self.command(1, name, '--quiet', *more), cwd=self.place, stderr=subprocess.DEVNULL)
+            while not checkpoint.exists() or checkpoint.stat().st_mtime_ns == written:
+                time.sleep(0.01)
+            run.send_signal(signal.SIGINT)
+            run.wait()
+            written = checkpoint.stat().st_mtime_ns
+            first, last = self.rows('case_out/case_global.csv')
+            self.assertEqual(first, 0)
+            times.append(last)
+        self.assertEqual(times, sorted(set(times)))
 
     @needs_gnuplot
     def test_picture_is_drawn(self):
@@ -548,6 +573,25 @@ class Laws(FaultTest):
                 self.assertAlmostEqual(float(events[0]['onset']) / onset, 1.0, delta=off, msg=law)
                 self.assertAlmostEqual(float(events[0]['largest_slip']), 0.04 * 50e6 / -own, delta=0.02 * 0.157, msg=law)
 
+    def test_slip_and_duration_of_an_event_are_those_between_its_ends(self):
+        """The cell of above, whose slip rate is closed in its slip: growing while it weakens, falling at mu_k. Ends lie within steps."""
+        self.write('z,mu_s,traction\n500,0.59,29.4999e6\n1500,0.9,29.4999e6\n', 'cells.csv')
+        damping, own = 30e9 / 6e3, 30e9 / (2 * math.pi * 1e3) * (4 - (2 - 2 / 3))
+        for rtol, off in (('1e-2', 1e-2), ('1e-4', 1e-3)):
+            self.run_fault(self.write(f"""
+&fault geometry = 'antiplane_half', width = 2000, nz = 2, shear_modulus = 30e9, wave_speed = 3000, plate_rate = 1e-9,
+       normal_traction = 50e6, initial = 'file', initial_file = 'cells.csv' /
+&friction law = 'slip_weakening', d_c = 0.1, mu_s = '@cells.csv', mu_k = 0.55 /
+&time t_end = 1e5, rtol = {rtol} /
+&output seismic_rate = 0.05 /
+"""), '--quiet')
+            event, = self.events('case_out', 'case')
+            slip = 2e6 / own - damping * 0.05 * (1 / own + 1 / (2e7 - own))
+            duration = damping * (1 / own + 1 / (2e7 - own)) * math.log((2e7 - own) * 0.1 / damping / 0.05)
+            self.assertAlmostEqual(float(event['duration']), duration, delta=off * duration, msg=rtol)
+            self.assertAlmostEqual(float(event['largest_slip']), slip, delta=off * slip, msg=rtol)
+            self.assertAlmostEqual(float(event['potency']), 1e3 * slip, delta=1e3 * off * slip, msg=rtol)
+
     def with_law(self, law):
         first, last = SUBLOADING.index('law ='), SUBLOADING.index("'exact_rate'") + len("'exact_rate'")
         return (SUBLOADING[:first] + law + SUBLOADING[last:]).replace('nz = 96', 'nz = 64')
@@ -574,6 +618,16 @@ class Laws(FaultTest):
             last = list(csv.DictReader(file))[-1]
         self.assertAlmostEqual(float(last['slip']), 1e-9 * 1.0e10, delta=1e-6)
         self.assertAlmostEqual(float(last['traction']), 30e6, delta=1)
+
+    def test_constant_friction_that_differs_slides_in_steps(self):
+        """Cells begin to slide one after the other: a step over all of that has a right end, and no history."""
+        (self.place / 'start.csv').write_text('z,mu,traction\n0,0.35,14e6\n40e3,0.3,14e6\n')
+        text = self.with_law("law = 'coulomb', mu = '@start.csv'").replace("'a.csv'", "'start.csv'")
+        self.run_fault(self.write(text), '--quiet')
+        rows = list(self.rows('case_out/case_global.csv').values())
+        self.assertGreater(len(rows), 30)
+        loading, *others = (float(rows[-1][name]) for name in ('loading_work', 'elastic_energy', 'dissipated', 'radiated'))
+        self.assertLess(abs(loading - sum(others)), 1e-3 * loading)
 
     def start(self, traction, slip_rate):
         (self.place / 'start.csv').write_text(f'z,traction,slip_rate\n0,{traction},{slip_rate}\n')
