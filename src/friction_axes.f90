@@ -47,13 +47,15 @@ contains
         real(wp), intent(inout) :: axes(3, 3)   !! as columns, the first is the normal
         integer, intent(out) :: status          !! ok or bad axis
         real(wp), parameter :: least = 1.0e-6_wp   !! sine of its angle to the normal
-        real(wp) :: part(2), old(3, 2)
+        real(wp) :: along(3), part(2), old(3, 2)
 
         status = friction_bad_axis
         old = axes(:, 2:3)
-        part(1) = dot_product(axis, old(:, 1))
-        part(2) = dot_product(axis, old(:, 2))
-        if (.not. norm2(part) > least * norm2(axis)) return
+        ! not so short that squares underflow; by a power of two, which changes no digit
+        along = scale(axis, -exponent(max(abs(axis(1)), abs(axis(2)), abs(axis(3)))))
+        part(1) = dot_product(along, old(:, 1))
+        part(2) = dot_product(along, old(:, 2))
+        if (.not. norm2(part) > least * norm2(along)) return
         part = part / norm2(part)
         axes(:, 2) = part(1) * old(:, 1) + part(2) * old(:, 2)
         axes(:, 3) = part(1) * old(:, 2) - part(2) * old(:, 1)
