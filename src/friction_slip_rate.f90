@@ -280,6 +280,7 @@ contains
         integer, intent(out) :: status                   !! ok or no convergence
         real(wp), parameter :: small = 1.0e-9_wp         !! the next error is below its square
         real(wp), parameter :: linear = 1.0e-9_wp        !! sinh(t) is t to the last bit
+        real(wp), parameter :: nothing = 1.0e-40_wp      !! of tau, times any logarithm
         integer, parameter :: max_iterations = 200
         real(wp) :: scale, shift, t, damped, step
         logical :: is_linear
@@ -289,6 +290,12 @@ contains
         ln_v = standstill
         if (.not. tau > 0.0_wp) return
         status = friction_no_convergence
+        if (max(surface%a, surface%b, surface%f0) * pressure <= nothing * tau) then
+            if (.not. damping > 0.0_wp) return   ! nothing holds it
+            ln_v = log(tau) - log(damping)
+            if (ln_v <= ln_most_rate) status = friction_ok
+            return
+        end if
         scale = max(surface%a * pressure, least_scale)
         t = tau / scale
         shift = state_exponent(surface%a, surface%b, surface%f0, log(surface%v0) + log(theta) &
