@@ -225,7 +225,7 @@ contains
         if (.not. are_usable([tau, pressure, damping])) return
         if (min(tau, pressure, damping) < 0.0_wp) return
         status = friction_bad_property
-        if (.not. are_usable(props)) return
+        if (.not. (are_usable([props(prop_law)]) .and. are_usable(props(first_own_prop:)))) return
         status = friction_bad_law
         nullify (surface)
         call find_rate_law(whole_number(props(prop_law)), storage, surface)
