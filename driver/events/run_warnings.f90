@@ -2,7 +2,7 @@
 !> model means (docs/driver.md, warnings).
 module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : friction_facts, law_facts, onset_drops, prop_alpha_t
+    use friction_mod, only : friction_facts, law_facts, onset_drops
     use law_facts, only : pressure_effect
     use run_outcome, only : outcome
     use run_settings, only : settings
@@ -13,8 +13,17 @@ module run_warnings
 
     type :: run_warning
         character(len=16) :: code = ''     !! one word, for tables
-        character(len=240) :: text = ''    !! one line
+        character(len=400) :: text = ''    !! one line
     end type run_warning
+
+    !> What friction does when slip begins.
+    type :: drop_of_friction
+        real(dp) :: slope = 0.0_dp      !! at which it falls with the slip rate [F T/L]
+        real(dp) :: force = 0.0_dp      !! by which it does [F]
+        real(dp) :: swing = 0.0_dp      !! of the block on both springs [rad/T]
+        real(dp) :: time = 0.0_dp       !! in which the drive makes up for it [T]
+        real(dp) :: velocity = 0.0_dp   !! of a block that slides [L/T]
+    end type drop_of_friction
 
 contains
 
@@ -80,8 +89,9 @@ contains
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
         real(dp), parameter :: pi = acos(-1.0_dp)
-        real(dp), parameter :: longest = 0.2_dp   !! step, part of a slip event
+        real(dp) :: longest   ! step, part of a slip event
         character(len=240) :: text
+        type(law_facts) :: law
         real(dp) :: lasts
 
         if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
@@ -93,6 +103,9 @@ contains
             return
         end if
         lasts = pi * sqrt(run%mass / run%stiffness)
+        longest = 0.2_dp
+        law = friction_facts(run%props)
+        if (law%rate_weakening > 0.0_dp) longest = 0.05_dp   ! when it drops and stops counts
         if (run%dt <= longest * lasts) return
         write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
             &events, which last about pi sqrt(mass/stiffness) =', lasts, ': take thirty steps &
@@ -100,35 +113,115 @@ contains
         warnings = [warnings, run_warning('long_step', text)]
     end subroutine look_at_step
 
-    !> Where friction falls faster with the slip rate than the contact spring unloads in a step, it
-    !> drops at once as slip begins, and the contact spring starts to ring. If nothing damps that,
-    !> it decides when the block sticks again.
+    !> Where friction falls with the slip rate in less time than the contact spring takes to swing,
+    !> or in less than a step unloads it, it drops at once as slip begins. What follows depends on
+    !> the contact spring, unless its ringing has died away by the time in which the drive makes up
+    !> for the drop. Fixed steps in which a block that slides moves less than the drop takes of the
+    !> contact spring stick in between: friction is then on the way from `mu_k` to `mu_s` again and
+    !> again, however much is damped. Newmark's adaptive steps become as short as that.
     subroutine look_at_contact(run, result, warnings)
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
-        real(dp), parameter :: least = 0.05_dp   !! damping ratio of the ringing that is enough
+        real(dp), parameter :: slow = 20.0_dp, slower = 50.0_dp   !! falls, of a swing [rad]
+        real(dp), parameter :: even = 0.5_dp   !! fall in a step that is still one without a jump
+        real(dp), parameter :: far = 4.0_dp
         type(law_facts) :: law
-        real(dp) :: critical   ! damping [F T/L]
-        character(len=240) :: text
+        type(drop_of_friction) :: drop
+        real(dp) :: by_step   ! how much the contact spring loads at a unit of velocity [F T/L]
+        logical :: slides_on, jumps
 
-        if (result%energy%dissipated <= 0.0_dp .or. run%rigid_contact) return
         law = friction_facts(run%props)
-        if (run%drive%largest_normal() * law%rate_weakening &
-            <= run%dt * run%props(prop_alpha_t)) return
-        if (damps_steps(run)) return
-        critical = 2.0_dp * sqrt(run%mass * (run%stiffness + run%area * run%props(prop_alpha_t)))
-        if (run%damping + run%area * law%damping >= least * critical) return
-        text = 'friction drops at once when slip begins, and the contact spring (alpha_t) rings &
-            &undamped: periods and stress drops depend on it. Take rho_infinity = 0 in &time'
-        if (run%chain%n_blocks == 1) then
-            text = trim(text) // ', a damping, eta_t, or contact = ''rigid'' in &friction with &
-                &adaptive steps'
+        drop = find_drop(run, law)
+        if (drop%slope <= run%area * law%damping .or. result%energy%dissipated <= 0.0_dp &
+            .or. run%rigid_contact) return
+        by_step = run%area * law%alpha_t * run%dt
+        if (run%adaptive) then
+            if (run%mass * drop%swing >= merge(slow, slower, result%in_rates) * drop%slope) return
+            if (dies_away(run, law, drop) .and. result%in_rates) return
         else
-            text = trim(text) // ', a damping or eta_t'
+            jumps = drop%slope > even * by_step
+            if (run%mass * drop%swing >= slow * drop%slope .and. .not. jumps) return
+            slides_on = by_step * drop%velocity >= far * drop%force .or. .not. jumps
+            if (slides_on .and. dies_away(run, law, drop)) return
         end if
-        warnings = [warnings, run_warning('undamped_contact', text)]
+        warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
+            &begins, and the contact spring (alpha_t) rings undamped or sticks in between: &
+            &periods, stress drops and friction depend on it. Take ' // remedies(run, law, drop))]
     end subroutine look_at_contact
+
+    function find_drop(run, law) result(drop)
+        type(settings), intent(in) :: run
+        type(law_facts), intent(in) :: law
+        type(drop_of_friction) :: drop
+        real(dp) :: normal, fastest   ! [F], [L/T]
+
+        normal = run%area * run%drive%largest_normal()
+        fastest = maxval(abs(run%drive%velocity))
+        drop%slope = normal * law%rate_weakening
+        drop%force = normal * (law%typical_coefficient - law%kinetic_coefficient)
+        drop%swing = sqrt((run%stiffness + run%area * law%alpha_t) / run%mass)
+        drop%time = drop%force / max(run%stiffness * fastest, tiny(1.0_dp))
+        drop%velocity = max(fastest, drop%force / (sqrt(run%stiffness * run%mass) + run%damping))
+    end function find_drop
+
+    !> Has the ringing died away before the drive has made up for the drop? And does the contact,
+    !> which swings about the spring's force when the block stops, hold in the other sense?
+    pure function dies_away(run, law, drop)
+        type(settings), intent(in) :: run
+        type(law_facts), intent(in) :: law
+        type(drop_of_friction), intent(in) :: drop
+        logical :: dies_away
+        real(dp), parameter :: pi = acos(-1.0_dp), enough = 4.0_dp, safe = 0.8_dp
+        real(dp) :: rate, turn   ! [1/T], [-]
+
+        rate = ringing_decay(run, drop%swing)
+        associate (static => law%typical_coefficient, kinetic => law%kinetic_coefficient)
+            turn = kinetic - (1.0_dp + exp(-rate * pi / drop%swing)) * (static - kinetic)
+            dies_away = rate * drop%time >= enough .and. turn >= -safe * static
+        end associate
+    end function dies_away
+
+    !> At which rate the contact's ringing dies away, by the damper and by fixed steps.
+    pure function ringing_decay(run, swing) result(rate)
+        type(settings), intent(in) :: run
+        real(dp), intent(in) :: swing   !! [1/T]
+        real(dp) :: rate                !! [1/T]
+        real(dp) :: x, step_part
+
+        rate = 0.5_dp * run%damping / run%mass
+        if (run%adaptive) return
+        x = (swing * run%dt)**2
+        step_part = 0.5_dp * (run%gamma - 0.5_dp) * x / (1.0_dp + 0.25_dp * x)
+        if (run%rho_infinity >= 0.0_dp) step_part = 0.5_dp * ((1.0_dp - run%rho_infinity) &
+            / (1.0_dp + run%rho_infinity))**3 * (x / (1.0_dp + x))**2
+        rate = rate / (1.0_dp + 0.25_dp * x) + step_part / run%dt
+    end function ringing_decay
+
+    !> What makes the contact that of textbooks, and in which steps it does.
+    function remedies(run, law, drop) result(text)
+        type(settings), intent(in) :: run
+        type(law_facts), intent(in) :: law
+        type(drop_of_friction), intent(in) :: drop
+        character(len=:), allocatable :: text
+        real(dp), parameter :: part = 0.05_dp   !! of a slip event
+        type(settings) :: other
+        character(len=16) :: number
+
+        text = ''
+        if (run%chain%n_blocks == 1) text = 'contact = ''rigid'' in &friction and rtol in &time &
+            &without beta, gamma and rho_infinity; '
+        other = run
+        other%adaptive = .false.
+        other%rho_infinity = 0.0_dp
+        other%dt = min(1.0_dp / drop%swing, run%t_end)
+        write (number, '(es9.2)') other%dt
+        if (dies_away(other, law, drop) .and. other%dt <= part * acos(-1.0_dp) * sqrt(run%mass &
+            / run%stiffness)) text = text // 'rho_infinity = 0 &
+            &with dt = ' // trim(adjustl(number)) // '; '
+        write (number, '(es9.2)') drop%slope / run%area
+        text = text // 'or eta_t above ' // trim(adjustl(number))
+    end function remedies
 
     subroutine look_at_file(run, result, warnings)
         type(settings), intent(in) :: run

@@ -50,6 +50,29 @@ class Warnings(Program):
         self.assertEqual(self.warnings(TEXTBOOK.replace('mu_k=0.2', 'mu_k=0.3')), [])
         self.assertEqual(self.warnings(TEXTBOOK.replace('t_end=3', 't_end=0.2')), [])
 
+    def test_what_damps_too_little_is_told_and_remedies_are_right(self):
+        """A contact 300 times as stiff as the drive. Textbook: 0.668 and 20.0; steady sliding under a strong damper: mu_k."""
+        text = TEXTBOOK.replace('1e8', '1.2e6')
+        for time in ('dt=1e-3, rho_infinity=0', 'dt=1e-4, rho_infinity=0', 'dt=1e-4, gamma=0.6, beta=0.31', 'rtol=1e-4',
+                     'rtol=1e-4, rho_infinity=0', 'rtol=1e-3, dt=1e-2'):   # the first step of adaptive ones has no say
+            lines = self.warnings(text.replace('dt=1e-4', time))
+            self.assertEqual(sum('rings undamped' in line for line in lines), 1, time)
+            period = [float(row['recurrence_time']) for row in self.rows('case_out/case_events.csv')][1:]
+            self.assertGreater(abs(sum(period) / len(period) / 0.668 - 1), 0.05, time)
+        self.assertIn("contact = 'rigid'", lines[0])
+        self.assertIn('rho_infinity = 0 with dt = 2.88E-03', lines[0])
+        self.assertIn('eta_t above 9.81E+04', lines[0])
+        for old, new in (('dt=1e-4', "dt=2.88e-3, rho_infinity=0"), ('d_c=1e4', 'd_c=1e4, eta_t=1e5'), ('d_c=1e4', "d_c=1e4, contact='rigid'")):
+            calm = text.replace(old, new)
+            self.assertEqual(self.warnings(calm.replace('dt=1e-4', 'rtol=1e-5') if 'rigid' in new else calm), [], new)
+            events = self.rows('case_out/case_events.csv')
+            self.assertAlmostEqual(float(events[-1]['recurrence_time']), 0.668, delta=0.02, msg=new)
+            self.assertAlmostEqual(float(events[-1]['stress_drop']), 20.0, delta=0.6, msg=new)
+        strong = text.replace('mass=10', 'mass=10, damping=1e3').replace('t_end=3', 't_end=2')
+        self.assertIn('sticks in between', self.warnings(strong)[0])   # friction 24.4, 25 % too large
+        self.assertEqual(self.warnings(strong.replace('dt=1e-4', 'dt=4e-3')), [])
+        self.assertAlmostEqual(float(self.rows('case_out/case.csv')[-1]['friction_force']), 19.62, delta=0.01)
+
     def test_friction_that_drops_at_once_in_two_ways_to_move_asks_for_continuous_time(self):
         text = """&friction law='static_kinetic', alpha_n=4655, alpha_t=10761, mu_s=0.427, mu_k=0.15, d_c=2122 /
             &slider mass=2.908e-5, stiffness=4.6, area=0.326, normal_traction=1, normal_mass=1e-5, normal_stiffness=1.96,
