@@ -2,6 +2,8 @@
 !> hand is one process, and leaves MPI alone. Reductions are of numbers that do not depend on their
 !> order: largest, lowest, gathered. Transposes are FFTW's.
 module processes
+    use, intrinsic :: ieee_exceptions, only : ieee_get_halting_mode, &
+        ieee_set_halting_mode, ieee_usual
     use, intrinsic :: iso_c_binding, only : c_double_complex, c_intptr_t, c_ptr
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fftw_mpi, only : fftw_destroy_plan, fftw_estimate, fftw_mpi_default_block, &
@@ -46,9 +48,13 @@ contains
 
     subroutine start(self)
         class(team), intent(out) :: self
+        logical :: traps(size(ieee_usual))   !! of a build with run-time checks
 
         if (.not. is_launched()) return
+        call ieee_get_halting_mode(ieee_usual, traps)
+        call ieee_set_halting_mode(ieee_usual, .false.)   ! what MPI loads may raise exceptions
         call mpi_init()
+        call ieee_set_halting_mode(ieee_usual, traps)
         call mpi_comm_rank(mpi_comm_world, self%rank)
         call mpi_comm_size(mpi_comm_world, self%members)
         call fftw_mpi_init()

@@ -165,6 +165,19 @@ class Benchmark(FaultTest):
         self.assertAlmostEqual(float(events[1]['onset']) / YEAR, 235.5, delta=2.5)
 
 
+# a procedure of MPI that divides by zero before it does its work
+RAISE = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+volatile double zero = 0.0, quotient;
+void FUNCTION(void *error)
+{
+    quotient = zero / zero;
+    ((void (*)(void *)) dlsym(RTLD_NEXT, "FUNCTION"))(error);
+}
+"""
+
+
 class Processes(FaultTest):
     def setUp(self):
         super().setUp()
@@ -189,6 +202,18 @@ class Processes(FaultTest):
         told = self.launch([PROGRAM, 'fault', 'case.nml', ':', '-n', '1', PROGRAM, 'fault', 'none.nml'], 2)
         self.assertEqual(told.count('Cannot open file'), 1, told)
         self.assertEqual(self.launch([PROGRAM, 'check', 'case.nml'], 0).count('valid'), 3)
+
+    @unittest.skipUnless(sys.platform == 'linux' and shutil.which('cc'), 'puts a library before MPI')
+    def test_floating_point_exceptions_while_mpi_starts_end_nothing(self):
+        """A build with run-time checks traps them, its own alone."""
+        self.write(SMALL.replace('1.0e10', '1.0e3'))   # a few steps
+        for function, ends in (('mpi_init_f08_', False), ('mpi_finalize_f08_', os.environ.get('STRICT') == 'ON')):
+            (self.place / 'raise.c').write_text(RAISE.replace('FUNCTION', function))
+            library = self.place / f'{function}.so'
+            subprocess.run(['cc', '-shared', '-fPIC', 'raise.c', '-o', library, '-ldl'], cwd=self.place, check=True)
+            done = subprocess.run([MPIRUN, '-n', '2', 'env', f'LD_PRELOAD={library}', PROGRAM, 'fault', 'case.nml', '--no-plot'],
+                                  cwd=self.place, env=ENVIRONMENT, capture_output=True, text=True)
+            self.assertEqual(done.returncode != 0, ends, function + done.stdout + done.stderr)
 
     def launch(self, command, status):
         """What three processes say."""
