@@ -15,7 +15,7 @@ def load(name: str) -> ctypes.CDLL:
     """A shared library of this package."""
     ending = 'dylib' if sys.platform == 'darwin' else 'so'
     # An editable installation has modules in one folder of the package and libraries in another.
-    paths = [pathlib.Path(folder).resolve() / 'lib' / f'lib{name}.{ending}' for folder in sys.modules[__package__].__path__]
+    paths = [pathlib.Path(folder).resolve() / f'lib{name}.{ending}' for folder in sys.modules[__package__].__path__]
     path = next((path for path in paths if path.exists()), paths[0])
     try:
         return ctypes.CDLL(str(path))

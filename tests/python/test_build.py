@@ -20,6 +20,12 @@ class Build(unittest.TestCase):
         for wheel in (ROOT / 'build/wheel').glob('*.whl'):
             self.assertLess(wheel.stat().st_size, 4e6)
 
+    def test_libraries_lie_in_the_package_s_own_folder(self):
+        """pip removes an empty folder, but none above it: an editable installation, which has nothing but the libraries
+        there, would leave an empty package behind."""
+        folder = pathlib.Path(stickslip.__file__).parent
+        self.assertEqual([path.parent for path in folder.rglob('lib*')], 2 * [folder])
+
     def test_only_numpy_is_needed_and_what_else_is_told(self):
         program = """import sys
 for name in ('pandas', 'scipy', 'matplotlib'):
