@@ -6,7 +6,7 @@ module picture
     use child_process, only : run_command
     use embedded_texts, only : get_text
     use number_text, only : short_text, whole_text
-    use platform, only : have_command, shell_word
+    use platform, only : have_command, remove_file, shell_word
     use printable_text, only : replaced
     use text_file, only : output_file
     use unit_names, only : units
@@ -70,7 +70,7 @@ contains
     end subroutine set_integer
 
     !> Writes DIRECTORY/STEM.gp and draws DIRECTORY/STEM.png and .svg with it. `problem` says what
-    !> went wrong.
+    !> went wrong: then there is no picture, not half of one either.
     subroutine draw(self, script, directory, stem, problem)
         class(picture_values), intent(in) :: self
         character(len=*), intent(in) :: script   !! name of one in output/pictures
@@ -105,6 +105,10 @@ contains
             else if (.not. is_whole(directory // '/' // stem // '.svg')) then
                 problem = 'gnuplot could not write the whole picture of ' // stem &
                     // '.gp (disk full?)'
+            end if
+            if (len(problem) > 0) then
+                call remove_file(directory // '/' // stem // '.png')
+                call remove_file(directory // '/' // stem // '.svg')
             end if
         end if
     end subroutine draw

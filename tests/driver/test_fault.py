@@ -18,7 +18,7 @@ import xml.etree.ElementTree
 
 from drawing import needs_gnuplot
 from field_reader import read_fields
-from strict_build import release_only
+from strict_build import STRICT, release_only
 
 PROGRAM = os.environ['STICKSLIP']
 ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault')
@@ -223,7 +223,8 @@ class Processes(FaultTest):
 
     def test_files_do_not_depend_on_the_number_of_processes(self):
         # odd numbers of cells: what is left over from vectors must not be rounded otherwise
-        for text, counts in ((SMALL.replace('nz = 64', 'nz = 63'), (2, 4)), (PLANE, (3,)), (HALF, (2, 4)),
+        odd = SMALL.replace('nz = 64', 'nz = 63')
+        for text, counts in ((odd, (2,)), (odd.replace('1.0e10', '4.0e9'), (4,)), (PLANE, (3,)), (HALF, (2, 4)),
                              (SUBLOADING.replace('nz = 96', 'nz = 91').replace('1.5e10', '1e9'), (2,))):
             name = self.write(text)
             shutil.rmtree(self.place / 'on1', ignore_errors=True)
@@ -244,7 +245,7 @@ class Processes(FaultTest):
         self.run_fault(name, '--output', 'whole', '--quiet')
         self.assertGreater(len(list((self.place / 'whole').glob('case_fields_0*'))), 1)
         whole = read_fields(self.place / 'whole' / 'case', FIELDS, 96 * 90)
-        for seconds, processes, then in ((0.1, 2, 3), (0.4, 1, 2), (0.7, 3, 1)):
+        for seconds, processes, then in ((0.1, 2, 3), (0.4, 1, 2), (0.7, 3, 1))[:1 if STRICT else 3]:
             self.kill(name, seconds, processes)
             times, fields = read_fields(self.place / 'parts' / 'case', FIELDS, 96 * 90)
             self.assertGreater(len(times), 3)

@@ -117,7 +117,7 @@ class StopAndGo(LongRun):
         """A gnuplot that never ends; tells its process number."""
         tool = self.folder / 'tools/gnuplot'
         tool.parent.mkdir()
-        tool.write_text('#!/bin/sh\necho $$ >../started\nexec sleep 1000\n')
+        tool.write_text('#!/bin/sh\necho >case.png\necho $$ >../started\nexec sleep 1000\n')
         tool.chmod(0o755)
         (self.folder / 'case.nml').write_text(namelist({('time', 't_end'): '0.1'}))
         return subprocess.Popen([PROGRAM, 'run', 'case.nml'], cwd=self.folder, stdout=subprocess.PIPE,
@@ -131,6 +131,7 @@ class StopAndGo(LongRun):
         errors = process.communicate(timeout=20)[1]
         self.assertEqual(process.returncode, 0)   # the run is done, its picture is not
         self.assertIn('gnuplot was stopped', errors)
+        self.assertFalse((self.folder / 'case_out/case.png').exists())   # it is not whole
         with self.assertRaises(ProcessLookupError):
             os.kill(int((self.folder / 'started').read_text()), 0)
 

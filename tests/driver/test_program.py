@@ -185,7 +185,7 @@ class GoodInput(Program):
         self.assertIn('gnuplot is not installed', result.stderr)
         self.assertTrue((self.folder / 'case_out/case.gp').exists())
 
-    def test_half_a_picture_is_told(self):
+    def test_half_a_picture_is_told_and_removed(self):
         tool = self.folder / 'tools/gnuplot'
         tool.parent.mkdir()
         (self.folder / 'case.nml').write_text(namelist())
@@ -197,6 +197,7 @@ class GoodInput(Program):
             result = self.run_program('run', 'case.nml', env={**os.environ, 'PATH': f"{tool.parent}:{os.environ['PATH']}"})
             self.assertEqual(result.returncode, 0)
             self.assertEqual('could not write the whole picture' in result.stderr, told, drawing)
+            self.assertEqual((self.folder / 'case_out/case.svg').exists(), not told)
 
     def test_check_says_that_good_input_is_valid_and_runs_nothing(self):
         result = self.run_text(namelist(), verb='check')
