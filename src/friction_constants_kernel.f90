@@ -16,8 +16,8 @@ module friction_constants_kernel
 
 contains
 
-    !> The constants of points 1 to `count`, and of lanes without a point those of the source. A
-    !> point that is left has those of the source, too; the routine for one point then judges it.
+    !> The constants of points 1 to `count`. Lanes without a point, and with one that is left, get
+    !> such as harm nobody; the routine for one point then judges that.
     pure subroutine copy_constants(source, stride, count, props, constants, options, left) &
         bind(C, name='stickslip_constants_kernel')
         type(constants_source), intent(in) :: source
@@ -27,14 +27,13 @@ contains
         real(wp), intent(out) :: constants(lanes, n_constants)
         integer(c_int), intent(out) :: options            !! sum of those that a point has
         integer(c_int), intent(out) :: left(lanes)        !! 1 for a point that is left, else 0
-        logical :: fine, any_left
+        logical :: fine
         integer :: used, i, k
 
         used = c_own + source%n_own - 1
         left = 0
         call copy_points(source, stride, count, props, constants, fine)
-        any_left = .not. fine
-        if (any_left) then   ! which of them?
+        if (.not. fine) then   ! which of them?
             do i = 1, count
                 call copy_points(source, stride, 1, props(i, 1), constants(i, 1), fine)
                 if (fine) cycle
@@ -57,10 +56,6 @@ contains
                 end do
             end if
         end if
-        if (.not. any_left) return
-        do i = 1, lanes
-            if (left(i) > 0) constants(i, :used) = source%value(:used)
-        end do
     end subroutine copy_constants
 
     !> Those of `n` points, and whether lanes can take all of them.
