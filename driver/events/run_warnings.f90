@@ -220,7 +220,9 @@ contains
             / run%stiffness)) text = text // 'rho_infinity = 0 &
             &with dt = ' // trim(adjustl(number)) // '; '
         write (number, '(es9.2)') drop%slope / run%area
-        text = text // 'or eta_t above ' // trim(adjustl(number))
+        if (len(text) > 0) text = text // 'or '
+        text = text // 'eta_t above ' // trim(adjustl(number))
+        if (run%chain%n_blocks > 1 .and. run%adaptive) text = text // ' in fixed steps'
     end function remedies
 
     subroutine look_at_file(run, result, warnings)

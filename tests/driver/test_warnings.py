@@ -68,6 +68,9 @@ class Warnings(Program):
             events = self.rows('case_out/case_events.csv')
             self.assertAlmostEqual(float(events[-1]['recurrence_time']), 0.668, delta=0.02, msg=new)
             self.assertAlmostEqual(float(events[-1]['stress_drop']), 20.0, delta=0.6, msg=new)
+        pair = text.replace('1.2e6', '1.2e4').replace('t_end=3', 't_end=1.2') + '&chain n_blocks=2, coupling=1e3 /'
+        for time, told in (('dt=1e-3', 'depend on it. Take eta_t above 9.81E+04'), ('rtol=1e-4', 'Take eta_t above 9.81E+04 in fixed steps')):
+            self.assertTrue(any(line.endswith(told) for line in self.warnings(pair.replace('dt=1e-4', time))), time)
         strong = text.replace('mass=10', 'mass=10, damping=1e3').replace('t_end=3', 't_end=2')
         self.assertIn('sticks in between', self.warnings(strong)[0])   # friction 24.4, 25 % too large
         self.assertEqual(self.warnings(strong.replace('dt=1e-4', 'dt=4e-3')), [])
