@@ -390,16 +390,18 @@ contains
         real(wp), intent(inout) :: tangent(this%points, this%ndir, this%ndir)
         integer, intent(out) :: status
         real(wp) :: du_(3), statev_(statev_size), traction_(3), tangent_(9)   ! the sizes in space
+        integer(int64) :: row   ! gfortran 14 checks bounds before it has computed an expression
         integer :: j, k
 
         status = friction_bad_size
         if (this%nstatv < statev_size) return
+        row = min(i, this%rows)
         do j = 1, this%ndir
             du_(j) = du(i, j)
         end do
         statev_ = statev(i, :statev_size)
         call update_arrays(array_sizes(1, this%ndir, this%nprops, statev_size), du_, this%dtime, &
-            props(min(i, this%rows), :), statev_, traction_, tangent_, status)
+            props(row, :), statev_, traction_, tangent_, status)
         if (status < 0) return
         statev(i, :statev_size) = statev_
         do k = 1, this%ndir
