@@ -61,10 +61,10 @@ module friction_law_choice
         lower=0.0_wp, optional=.true.)]
 
     !> The options of every law, from the place behind its own constants on.
-    integer, parameter, public :: option_cap = 1
-    integer, parameter :: option_orthotropy = option_cap + size(cap_constants)
-    integer, parameter, public :: option_cohesion = option_orthotropy + size(orthotropy_constants)
-    integer, parameter, public :: option_damping = option_cohesion + size(cohesion_constants)
+    integer, parameter :: option_cap = 1
+    integer, parameter, public :: option_orthotropy = option_cap + size(cap_constants)
+    integer, parameter :: option_cohesion = option_orthotropy + size(orthotropy_constants)
+    integer, parameter :: option_damping = option_cohesion + size(cohesion_constants)
     integer, parameter :: option_count = option_damping + size(damper_constants) - 1
     type(law_constant), parameter, public :: option_constants(option_count) = [cap_constants, &
         orthotropy_constants, cohesion_constants, damper_constants]

@@ -7,8 +7,8 @@
 submodule(friction_mod) friction_slip_rate
     use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
     use friction_lane_block, only : lanes
-    use friction_law_choice, only : find_rate_law, first_own_prop, law_storage, option_cap, &
-        option_cohesion, options_of, prop_law, surface_options, whole_number
+    use friction_law_choice, only : find_rate_law, first_own_prop, law_storage, &
+        option_orthotropy, options_of, prop_law, surface_options, whole_number
     use friction_rate_state_core, only : ageing_rate, asinh_exp, slip_law_rate, slope_asinh_exp, &
         state_exponent
     use friction_rate_state_law, only : ageing, n_constants, n_needed, rate_state_law, shifted, &
@@ -21,8 +21,10 @@ submodule(friction_mod) friction_slip_rate
     integer, parameter :: least_props = first_own_prop + own_constants - 1
     integer, parameter :: prop_evolution = least_props + 1          !! may be left out
     integer, parameter :: first_option = first_own_prop + n_constants
-    integer, parameter :: prop_cap = first_option - 1 + option_cap             !! likewise
-    integer, parameter :: prop_cohesion = first_option - 1 + option_cohesion   !! likewise
+    integer, parameter :: prop_theta_0 = prop_evolution + 1         !! likewise
+    integer, parameter :: prop_ratio = first_option - 1 + option_orthotropy   !! 1 is as 0
+    !> Values of `theta_0` that are judged without a second look.
+    real(wp), parameter :: least_theta_0 = 1.0e-90_wp, most_theta_0 = 1.0e90_wp
     real(wp), parameter :: standstill = -700.0_wp      !! ln of what counts as no slip rate
     real(wp), parameter :: ln_most_rate = 300.0_wp     !! ln of the largest slip rate told
     real(wp), parameter :: least_scale = 1.0e-200_wp   !! of a p, so that quotients are in range
@@ -163,7 +165,7 @@ contains
         real(wp), intent(out) :: rates(lanes, 2)
         integer(c_int), intent(inout) :: left(lanes)   !! 1 for a point that is not taken
         real(wp) :: full(lanes, 3), constants(lanes, own_constants)
-        integer :: evolution, i
+        integer :: evolution, i, k
 
         evolution = ageing
         if (nprops >= prop_evolution) then
@@ -192,15 +194,27 @@ contains
                 if (differs(props(i, prop_evolution), real(evolution, wp))) left(i) = 1
             end do
         end if
-        if (nprops < prop_cap) return
-        do i = 1, count
-            if (differs(props(i, prop_cap), 0.0_wp)) left(i) = 1
+        if (nprops < prop_theta_0) return
+        do i = 1, count   ! it is not used, but judged
+            if (.not. is_between(props(i, prop_theta_0), least_theta_0, most_theta_0)) left(i) = 1
         end do
-        if (nprops < prop_cohesion) return
-        do i = 1, count
-            if (differs(props(i, prop_cohesion), 0.0_wp)) left(i) = 1
+        do k = first_option, nprops
+            do i = 1, count
+                if (differs(props(i, k), 0.0_wp) .and. (k /= prop_ratio &
+                    .or. differs(props(i, k), 1.0_wp))) left(i) = 1
+            end do
         end do
     end subroutine try_kernel
+
+    !> Compares bits of a positive number, as `differs` does.
+    elemental function is_between(x, low, high)
+        real(wp), intent(in) :: x, low, high
+        logical :: is_between
+        integer(int64) :: bits
+
+        bits = transfer(x, 0_int64)
+        is_between = bits >= transfer(low, 0_int64) .and. bits <= transfer(high, 0_int64)
+    end function is_between
 
     !> Compares bits: silent where a comparison with NaN raises an exception.
     elemental function differs(x, y)
