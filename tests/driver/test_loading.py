@@ -541,7 +541,7 @@ class ContinuousTime(Columns):
         onsets = []
         for rtol in ('1e-6', '1e-8', '1e-10'):
             self.summary(self.textbook.replace('1e-8 /', rtol + ' /').replace('t_end=4', 't_end=1.5'), 'steps',
-                         warning="Take rho_infinity = 0 in &time, a damping, eta_t, or contact = 'rigid'")
+                         warning="Take contact = 'rigid' in &friction and rtol in &time")
             onsets.append([event['onset'] for event in self.events()])
         for first, second, third in zip(*onsets):
             self.assertLess(abs(second - third), 1e-5)
