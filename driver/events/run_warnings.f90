@@ -83,16 +83,30 @@ contains
             .and. run%gamma > 0.5_dp .and. .not. run%adaptive
     end function damps_steps
 
-    !> A slip event lasts about pi sqrt(M/K).
+    !> How long a slip event lasts, about [T].
+    pure function event_duration(run) result(lasts)
+        type(settings), intent(in) :: run
+        real(dp) :: lasts
+        real(dp), parameter :: pi = acos(-1.0_dp)
+
+        lasts = pi * sqrt(run%mass / run%stiffness)
+    end function event_duration
+
+    !> The longest fixed step that follows an event [T]. Where friction drops at once, the moments
+    !> count at which it does and the block stops.
+    pure function longest_step(run, law) result(dt)
+        type(settings), intent(in) :: run
+        type(law_facts), intent(in) :: law
+        real(dp) :: dt
+
+        dt = merge(0.05_dp, 0.2_dp, law%rate_weakening > 0.0_dp) * event_duration(run)
+    end function longest_step
+
     subroutine look_at_step(run, result, warnings)
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
         type(run_warning), allocatable, intent(inout) :: warnings(:)
-        real(dp), parameter :: pi = acos(-1.0_dp)
-        real(dp) :: longest   ! step, part of a slip event
         character(len=240) :: text
-        type(law_facts) :: law
-        real(dp) :: lasts
 
         if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
         if (result%unresolved > 0) then
@@ -102,14 +116,10 @@ contains
             warnings = [warnings, run_warning('long_step', text)]
             return
         end if
-        lasts = pi * sqrt(run%mass / run%stiffness)
-        longest = 0.2_dp
-        law = friction_facts(run%props)
-        if (law%rate_weakening > 0.0_dp) longest = 0.05_dp   ! when it drops and stops counts
-        if (run%dt <= longest * lasts) return
+        if (run%dt <= longest_step(run, friction_facts(run%props))) return
         write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
-            &events, which last about pi sqrt(mass/stiffness) =', lasts, ': take thirty steps &
-            &or more to an event'
+            &events, which last about pi sqrt(mass/stiffness) =', event_duration(run), &
+            ': take thirty steps or more to an event'
         warnings = [warnings, run_warning('long_step', text)]
     end subroutine look_at_step
 
@@ -204,7 +214,6 @@ contains
         type(law_facts), intent(in) :: law
         type(drop_of_friction), intent(in) :: drop
         character(len=:), allocatable :: text
-        real(dp), parameter :: part = 0.05_dp   !! of a slip event
         type(settings) :: other
         character(len=16) :: number
 
@@ -216,9 +225,8 @@ contains
         other%rho_infinity = 0.0_dp
         other%dt = min(1.0_dp / drop%swing, run%t_end)
         write (number, '(es9.2)') other%dt
-        if (dies_away(other, law, drop) .and. other%dt <= part * acos(-1.0_dp) * sqrt(run%mass &
-            / run%stiffness)) text = text // 'rho_infinity = 0 &
-            &with dt = ' // trim(adjustl(number)) // '; '
+        if (dies_away(other, law, drop) .and. other%dt <= longest_step(run, law)) text = text &
+            // 'rho_infinity = 0 with dt = ' // trim(adjustl(number)) // '; '
         write (number, '(es9.2)') drop%slope / run%area
         if (len(text) > 0) text = text // 'or '
         text = text // 'eta_t above ' // trim(adjustl(number))

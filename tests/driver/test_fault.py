@@ -207,7 +207,7 @@ class Processes(FaultTest):
     def test_floating_point_exceptions_while_mpi_starts_end_nothing(self):
         """A build with run-time checks traps them, its own alone."""
         self.write(SMALL.replace('1.0e10', '1.0e3'))   # a few steps
-        for function, ends in (('mpi_init_f08_', False), ('mpi_finalize_f08_', os.environ.get('STRICT') == 'ON')):
+        for function, ends in (('mpi_init_f08_', False), ('mpi_finalize_f08_', STRICT)):
             (self.place / 'raise.c').write_text(RAISE.replace('FUNCTION', function))
             library = self.place / f'{function}.so'
             subprocess.run(['cc', '-shared', '-fPIC', 'raise.c', '-o', library, '-ldl'], cwd=self.place, check=True)
