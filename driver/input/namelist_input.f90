@@ -12,7 +12,7 @@ module namelist_input
     use namelist_rules, only : above, any_number, at_least, between, not_zero, rule
     use number_reader, only : largest, read_number
     use number_text, only : whole_text
-    use printable_text, only : lower, printable
+    use printable_text, only : growing_text, lower, printable
     use whole_file, only : plain_text, read_whole_file
     implicit none
     private
@@ -774,39 +774,23 @@ contains
         class(namelist_file), intent(in) :: self
         character(len=*), intent(in) :: without    !! a group that is left out, or ''
         character(len=:), allocatable :: text
-        character(len=:), allocatable :: head
-        integer :: length, pass, i, j
+        type(growing_text) :: written
+        integer :: i, j
 
-        allocate (character(len=0) :: text)
-        do pass = 1, 2   ! the first one measures
-            length = 0
-            do i = 1, size(self%entries)
-                associate (entry => self%entries(i))
-                    if (entry%group == without) cycle
-                    head = '&' // entry%group // ' ' // entry%key
-                    if (entry%subscripted) head = head // '(' // whole_text(entry%first) &
-                        // '::' // whole_text(entry%stride) // ')'
-                    call put(head // ' =')
-                    do j = 1, size(entry%values)
-                        call put(' ' // quoted(entry%values(j)))
-                    end do
-                    call put(new_line('a'))
-                end associate
-            end do
-            if (pass == 2) exit
-            deallocate (text)
-            allocate (character(len=length) :: text)
+        do i = 1, size(self%entries)
+            associate (entry => self%entries(i))
+                if (entry%group == without) cycle
+                call written%put('&' // entry%group // ' ' // entry%key)
+                if (entry%subscripted) call written%put('(' // whole_text(entry%first) // '::' &
+                    // whole_text(entry%stride) // ')')
+                call written%put(' =')
+                do j = 1, size(entry%values)
+                    call written%put(' ' // quoted(entry%values(j)))
+                end do
+                call written%put(new_line('a'))
+            end associate
         end do
-
-    contains
-
-        subroutine put(word)
-            character(len=*), intent(in) :: word
-
-            if (pass == 2) text(length + 1:length + len(word)) = word
-            length = length + len(word)
-        end subroutine put
-
+        text = written%text()
     end function listing
 
     !> Notes a fault in a line; line 0 is the file as a whole.

@@ -7,18 +7,11 @@ module namelist_json
     use namelist_parser, only : value_token
     use number_reader, only : read_number
     use number_text, only : full_row
+    use printable_text, only : growing_text
     implicit none
     private
 
     public :: write_json
-
-    !> A text that grows.
-    type :: growing_text
-        character(len=:), allocatable :: room
-        integer :: n = 0
-    contains
-        procedure :: put
-    end type growing_text
 
 contains
 
@@ -32,7 +25,6 @@ contains
         integer :: group, i, k
         logical :: first
 
-        allocate (character(len=1024) :: written%room)
         call written%put('{')
         do group = 1, size(file%groups)
             if (group > 1) call written%put(', ')
@@ -55,7 +47,7 @@ contains
             call written%put('}')
         end do
         call written%put('}')
-        text = written%room(:written%n)
+        text = written%text()
     end subroutine write_json
 
     subroutine put_value(file, entry, token, written)
@@ -119,16 +111,5 @@ contains
         end do
         call written%put('"')
     end subroutine put_text
-
-    subroutine put(self, word)
-        class(growing_text), intent(inout) :: self
-        character(len=*), intent(in) :: word
-
-        do while (self%n + len(word) > len(self%room))
-            self%room = self%room // self%room
-        end do
-        self%room(self%n + 1:self%n + len(word)) = word
-        self%n = self%n + len(word)
-    end subroutine put
 
 end module namelist_json

@@ -351,15 +351,11 @@ contains
         type(field_parts), intent(in) :: self
         integer, intent(in) :: field
         character(len=:), allocatable :: text
-        integer :: i
 
         text = 'time'
         if (field == 0) return
-        text = ''
-        do i = 1, name_length
-            if (self%layout%names(i, field) == c_null_char) return
-            text = text // self%layout%names(i, field)
-        end do
+        text = transfer(self%layout%names(:, field), repeat(' ', name_length))
+        text = text(:index(text, c_null_char) - 1)
     end function field_name
 
     ! ---- names and numbers -------------------------------------------------------------------
@@ -401,14 +397,12 @@ contains
     end function file_name
 
     pure function letters(name) result(all_letters)
-        character(len=*), intent(in) :: name
+        character(len=*), intent(in) :: name   !! shorter than that
         character(kind=c_char) :: all_letters(name_length)
-        integer :: i
+        character(len=name_length) :: ended
 
-        all_letters = c_null_char
-        do i = 1, min(len_trim(name), name_length - 1)
-            all_letters(i) = name(i:i)
-        end do
+        ended = trim(name) // repeat(c_null_char, name_length)
+        all_letters = transfer(ended, all_letters)
     end function letters
 
     !> Whole numbers as words of XDMF.

@@ -38,7 +38,7 @@ contains
         type(settings), intent(in) :: run
 
         self%area = run%area
-        call self%clock%prepare(run)
+        self%clock = row_clock(run%interval, run%every)
         self%columns = series_size(run)
         call self%series%start(series_columns(run))
         call self%events%start(event_columns)

@@ -8,7 +8,7 @@ module picture
     use number_text, only : short_text, whole_text
     use platform, only : have_command, remove_file, shell_word
     use printable_text, only : replaced
-    use text_file, only : output_file
+    use text_file, only : end_of_file, output_file
     use unit_names, only : units
     implicit none
     private
@@ -77,7 +77,9 @@ contains
         character(len=*), intent(in) :: directory, stem
         character(len=:), allocatable, intent(out) :: problem
         character(len=128), allocatable :: lines(:)
+        character(len=:), allocatable :: tail
         type(output_file) :: file
+        integer(int64) :: bytes
         logical :: succeeded, in_time
         integer :: i
 
@@ -98,11 +100,12 @@ contains
         else
             call run_command('cd ' // shell_word(directory) // ' && exec gnuplot ' &
                 // shell_word(stem // '.gp') // ' >/dev/null 2>&1', time_limit, succeeded, in_time)
+            call end_of_file(directory // '/' // stem // '.svg', 16, tail, bytes)   ! drawn last
             if (.not. in_time) then
                 problem = 'gnuplot was stopped on ' // stem // '.gp, after a minute or by a signal'
             else if (.not. succeeded) then
                 problem = 'gnuplot failed on ' // stem // '.gp: no picture is drawn'
-            else if (.not. is_whole(directory // '/' // stem // '.svg')) then
+            else if (index(tail, '</svg>') == 0) then   ! gnuplot takes a full disk for success
                 problem = 'gnuplot could not write the whole picture of ' // stem &
                     // '.gp (disk full?)'
             end if
@@ -112,26 +115,5 @@ contains
             end if
         end if
     end subroutine draw
-
-    !> Is there the end of a picture, the last that a script writes? gnuplot takes a full disk for
-    !> success.
-    function is_whole(name) result(yes)
-        character(len=*), intent(in) :: name   !! of an SVG file
-        logical :: yes
-        integer, parameter :: most = 16
-        character(len=most) :: ends
-        integer(int64) :: bytes
-        integer :: unit, status
-
-        yes = .false.
-        inquire (file=name, size=bytes)
-        if (bytes < most) return
-        open (newunit=unit, file=name, access='stream', form='unformatted', status='old', &
-            action='read', iostat=status)
-        if (status /= 0) return
-        read (unit, pos=bytes - most + 1, iostat=status) ends
-        close (unit)
-        yes = status == 0 .and. index(ends, '</svg>') > 0
-    end function is_whole
 
 end module picture

@@ -3,7 +3,7 @@ module point_recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : statev_dissipation, statev_mu, statev_r, statev_slip, statev_status
     use material_point, only : contact_point
-    use number_text, only : full_row
+    use number_text, only : full_row, whole_text
     use text_file, only : output_file
     implicit none
     private
@@ -52,17 +52,14 @@ contains
         type(contact_point), intent(in) :: point
         integer, intent(in) :: iterations        !! that the increment took
         character(len=:), allocatable :: line
-        character(len=12) :: count
         integer :: j
 
         line = full_row([time])
         call add(point%u)
         call add(point%traction)
-        write (count, '(a, i0)') ',', nint(point%statev(statev_status))
-        line = line // trim(count)
+        line = line // ',' // whole_text(nint(point%statev(statev_status)))
         call add(point%statev([statev_mu, statev_r, statev_slip, statev_dissipation]))
-        write (count, '(a, i0)') ',', iterations
-        line = line // trim(count)
+        line = line // ',' // whole_text(iterations)
         if (self%tangent) then
             do j = 1, size(point%u)
                 call add(point%tangent(:, j))

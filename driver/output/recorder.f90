@@ -4,13 +4,12 @@ module recorder
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use archive_file, only : archive
     use chain_fields, only : chain_field_file
-    use number_text, only : full_row
+    use number_text, only : full_row, whole_text
     use run_observer, only : observer, step_news
     use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
         series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
-    use slip_events, only : slip_event
     use text_file, only : gigabyte, output_file
     use thinned_series, only : thinned
     implicit none
@@ -38,8 +37,7 @@ module recorder
     contains
         procedure :: prepare, open, begin, see, finish, visit
         procedure :: flush_all, failed, picture_file
-        procedure, private :: go_on, tell_loss, write_state, write_event, &
-            write_chain_events, write_thinned
+        procedure, private :: tell_loss, write_state, write_chain_events, write_thinned
     end type csv_recorder
 
 contains
@@ -53,7 +51,7 @@ contains
         self%base = base
         self%n_blocks = run%chain%n_blocks
         self%area = run%area
-        call self%clock%prepare(run)
+        self%clock = row_clock(run%interval, run%every)
         self%columns = series_columns(run)
         self%fields_interval = run%fields
         self%table_limit = gigabyte * run%table_limit
@@ -76,17 +74,6 @@ contains
         if (self%fields_interval > 0) call self%fields%create(self%base, self%n_blocks)
         call self%flush_all()
     end subroutine open
-
-    !> Goes on in the files of an interrupted run, behind what they held at its last checkpoint.
-    subroutine go_on(self, series, events, fields)
-        class(csv_recorder), intent(inout) :: self
-        integer(int64), intent(in) :: series, events   !! bytes
-        integer(int64), intent(in) :: fields           !! records
-
-        call self%series%go_on(self%base // '.csv', series)
-        call self%events%go_on(self%base // '_events.csv', events)
-        if (self%fields_interval > 0) call self%fields%go_on(self%base, self%n_blocks, fields)
-    end subroutine go_on
 
     !> Row 0 is the initial state.
     subroutine begin(self, start, news)
@@ -117,7 +104,8 @@ contains
         end if
         if (self%n_blocks == 1) then
             do i = 1, size(news%slip_events)
-                call self%write_event(news%slip_events(i))
+                call self%events%write_line(full_row(event_row(news%slip_events(i), self%area)))
+                call self%events%flush_lines()
             end do
         end if
         call self%write_chain_events(news)
@@ -155,7 +143,7 @@ contains
     subroutine visit(self, file)
         class(csv_recorder), intent(inout) :: self
         type(archive), intent(inout) :: file
-        integer(int64) :: series, events, fields
+        integer(int64) :: series, events, fields   ! bytes, bytes, records
 
         series = self%series%bytes
         events = self%events%bytes
@@ -163,7 +151,10 @@ contains
         call file%visit(self%rows, self%clock%steps, self%clock%shown, self%fields_due)
         call self%picture%visit(file)
         call file%visit(series, events, fields)
-        if (.not. file%writing) call self%go_on(series, events, fields)
+        if (file%writing) return
+        call self%series%go_on(self%base // '.csv', series)
+        call self%events%go_on(self%base // '_events.csv', events)
+        if (self%fields_interval > 0) call self%fields%go_on(self%base, self%n_blocks, fields)
     end subroutine visit
 
     !> The file of which a picture is drawn: the series itself, unless it is long.
@@ -222,29 +213,18 @@ contains
     subroutine write_chain_events(self, news)
         class(csv_recorder), intent(inout) :: self
         type(step_news), intent(in) :: news
-        character(len=24) :: blocks
-        integer :: i
+        integer :: blocks, i
 
         do i = 1, size(news%chain_events)
             associate (event => news%chain_events(i))
-                write (blocks, '(i0, ",", i0)') event%first, event%last - event%first + 1
+                blocks = event%last - event%first + 1
                 call self%events%write_line(full_row([event%onset, event%end - event%onset]) &
-                    // ',' // trim(blocks) // ',' // full_row([event%slip &
-                    / (event%last - event%first + 1), self%area * event%slip, &
-                    event%peak_velocity]) &
-                    // merge(',0', ',1', news%cut_short))
+                    // ',' // whole_text(event%first) // ',' // whole_text(blocks) // ',' &
+                    // full_row([event%slip / blocks, self%area * event%slip, &
+                    event%peak_velocity]) // merge(',0', ',1', news%cut_short))
             end associate
             call self%events%flush_lines()
         end do
     end subroutine write_chain_events
-
-    !> One row of the table of events.
-    subroutine write_event(self, event)
-        class(csv_recorder), intent(inout) :: self
-        type(slip_event), intent(in) :: event
-
-        call self%events%write_line(full_row(event_row(event, self%area)))
-        call self%events%flush_lines()
-    end subroutine write_event
 
 end module recorder

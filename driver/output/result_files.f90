@@ -33,36 +33,24 @@ contains
         type(namelist_file), intent(in) :: file
         character(len=*), intent(in) :: directory, stem
         character(len=:), allocatable, intent(out) :: problem
-        character(len=:), allocatable :: input
+        integer :: i
 
         problem = ''
         if (.not. make_directory(directory)) then
             problem = "stickslip: cannot write to the directory '" // directory // "'"
-        else
-            input = overwritten_input(file, directory, stem)
-            if (len(input) > 0) problem = 'stickslip: ' // file%name // ': the results would ' &
-                // "overwrite the input '" // input // "': choose another --output"
+            return
         end if
-    end subroutine prepare_output
-
-    !> An input that the results of STEM in a directory would overwrite; empty if there is none.
-    function overwritten_input(file, directory, stem) result(path)
-        type(namelist_file), intent(in) :: file   !! with the names of all files that it reads
-        character(len=*), intent(in) :: directory, stem
-        character(len=:), allocatable :: path
-        integer :: i
-
-        path = ''
         do i = 1, size(file%files)
             associate (input => file%files(i)%text)
                 ! also where the file is a link, or a link leads to it
                 if (.not. (is_result(input, directory, stem) &
                     .or. is_result(plain_path(input), directory, stem))) cycle
-                path = input
+                problem = 'stickslip: ' // file%name // ': the results would overwrite the ' &
+                    // "input '" // input // "': choose another --output"
                 return
             end associate
         end do
-    end function overwritten_input
+    end subroutine prepare_output
 
     function is_result(path, directory, stem) result(yes)
         character(len=*), intent(in) :: path, directory, stem

@@ -23,18 +23,10 @@ module run_rows
         integer :: steps = 0         !! since the last row by `interval`
         logical :: shown = .true.    !! the state at the end of the last step has its row
     contains
-        procedure :: prepare, tick
+        procedure :: tick
     end type row_clock
 
 contains
-
-    subroutine prepare(self, run)
-        class(row_clock), intent(inout) :: self
-        type(settings), intent(in) :: run
-
-        self%interval = run%interval
-        self%every = run%every
-    end subroutine prepare
 
     !> After each step.
     pure subroutine tick(self, old, new, news, due)

@@ -4,15 +4,11 @@
 module sweep_journal
     use platform, only : rename_file
     use text_file, only : output_file
-    use whole_file, only : next_line, read_whole_file
+    use whole_file, only : line_text, next_line, read_whole_file
     implicit none
     private
 
-    public :: journal, read_rows, text_line
-
-    type :: text_line
-        character(len=:), allocatable :: text
-    end type text_line
+    public :: journal, read_rows
 
     type :: journal
         type(output_file) :: file
@@ -29,14 +25,19 @@ contains
         class(journal), intent(inout) :: self
         character(len=*), intent(in) :: name
         character(len=*), intent(in) :: input   !! what the rows depend on; lines ended by newlines
-        type(text_line), allocatable, intent(out) :: rows(:)
+        type(line_text), allocatable, intent(out) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
-        integer :: i
+        integer :: first, last, number, i
 
         call read_rows(name, input, rows, problem)
         if (len(problem) > 0) return
         call self%file%create(name // '.new')
-        call write_marked(self%file, input)
+        last = -1
+        number = 0
+        do while (last < len(input) - 1)
+            call next_line(input, first, last, number)
+            call self%file%write_line(mark // input(first:last))
+        end do
         do i = 1, size(rows)
             call self%file%write_line(rows(i)%text)
         end do
@@ -53,26 +54,13 @@ contains
     subroutine read_rows(name, input, rows, problem)
         character(len=*), intent(in) :: name
         character(len=*), intent(in) :: input   !! what the rows depend on; lines ended by newlines
-        type(text_line), allocatable, intent(out) :: rows(:)
+        type(line_text), allocatable, intent(out) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
-        character(len=:), allocatable :: old_input
-
-        call read_journal(name, old_input, rows)
-        problem = ''
-        if (len(old_input) > 0 .and. old_input /= input) problem = name // ' holds results of ' &
-            // 'another input: delete it, or write elsewhere with --output'
-    end subroutine read_rows
-
-    !> Both are empty where there is no journal, or none with a whole line.
-    subroutine read_journal(name, input, rows)
-        character(len=*), intent(in) :: name
-        character(len=:), allocatable, intent(out) :: input
-        type(text_line), allocatable, intent(out) :: rows(:)
-        character(len=:), allocatable :: text, problem
-        type(text_line) :: line
+        character(len=:), allocatable :: text, old_input
+        type(line_text) :: line
         integer :: first, last, number
 
-        input = ''
+        old_input = ''
         allocate (rows(0))
         call read_whole_file(name, text, problem)
         last = -1
@@ -82,25 +70,15 @@ contains
             if (last == len(text)) exit
             line%text = text(first:last)
             if (index(line%text, mark) == 1) then
-                input = input // line%text(len(mark) + 1:) // new_line('a')
+                old_input = old_input // line%text(len(mark) + 1:) // new_line('a')
             else
                 rows = [rows, line]
             end if
         end do
-    end subroutine read_journal
-
-    subroutine write_marked(file, input)
-        type(output_file), intent(inout) :: file
-        character(len=*), intent(in) :: input
-        integer :: first, last, number
-
-        last = -1
-        number = 0
-        do while (last < len(input) - 1)
-            call next_line(input, first, last, number)
-            call file%write_line(mark // input(first:last))
-        end do
-    end subroutine write_marked
+        problem = ''
+        if (len(old_input) > 0 .and. old_input /= input) problem = name // ' holds results of ' &
+            // 'another input: delete it, or write elsewhere with --output'
+    end subroutine read_rows
 
     !> Adds a row and hands it to the operating system at once.
     subroutine append(self, row)

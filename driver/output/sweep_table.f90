@@ -2,7 +2,7 @@
 module sweep_table
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use linear_stability, only : analyse, stability, undecided, verdicts
-    use number_text, only : quoted_field, short_text
+    use number_text, only : quoted_field, short_text, whole_text
     use piece_table, only : pieces_reached
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
@@ -67,19 +67,18 @@ contains
         type(outcome), intent(in) :: result
         character(len=:), allocatable :: text
         type(event_totals), allocatable :: late(:)
-        integer :: events, late_events
-        character(len=40) :: counts
+        character(len=:), allocatable :: counts
+        integer :: late_events
 
         if (len(result%failure) > 0) then
             text = failure_text(result%failure)
             return
         end if
-        events = sum(result%pieces%events)
         late = pack(result%pieces, run%drive%start >= late_from(run))
         late_events = sum(late%events)
-        write (counts, '(i0, a, i0)') events, ',', late_events
-        text = 'ok,steady,' // trim(counts) // ',NaN,NaN,NaN'
-        if (late_events > 1) text = 'ok,stick-slip,' // trim(counts) &
+        counts = whole_text(sum(result%pieces%events)) // ',' // whole_text(late_events)
+        text = 'ok,steady,' // counts // ',NaN,NaN,NaN'
+        if (late_events > 1) text = 'ok,stick-slip,' // counts &
             // ',' // ratio(sum(late%period), real(sum(late%recurrences), dp)) &
             // ',' // ratio(sum(late%force_drop), late_events * run%area) &
             // ',' // short_text(maxval(late%peak_velocity))

@@ -24,8 +24,7 @@ module archive_file
         procedure :: visit_list
     end type archive
 
-    integer, parameter :: part = 512   !! words that are read or written together
-    integer, parameter :: word = 8     !! its bytes
+    integer, parameter :: word = 8   !! its bytes
 
 contains
 
@@ -77,6 +76,7 @@ contains
     function is_intact(self, bytes) result(intact)
         class(archive), intent(inout) :: self
         integer(int64), intent(in) :: bytes   !! length of the file
+        integer, parameter :: part = 512   !! words that are read together
         logical :: intact
         integer(int64) :: chunk(part), left, found, checksum
         integer :: n, status
@@ -174,16 +174,11 @@ contains
     subroutine visit_reals(self, numbers)
         class(archive), intent(inout) :: self
         real(dp), intent(inout) :: numbers(:)
-        integer(int64) :: chunk(part)
-        integer :: first, last, n
+        integer(int64) :: chunk(size(numbers))
 
-        do first = 1, size(numbers), part
-            last = min(first + part - 1, size(numbers))
-            n = last - first + 1
-            chunk(:n) = transfer(numbers(first:last), chunk(:n))
-            call self%visit_words(chunk(:n))
-            numbers(first:last) = transfer(chunk(:n), numbers(first:last))
-        end do
+        chunk = transfer(numbers, chunk)
+        call self%visit_words(chunk)
+        numbers = transfer(chunk, numbers)
     end subroutine visit_reals
 
     subroutine visit_table(self, numbers)

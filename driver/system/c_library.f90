@@ -7,7 +7,7 @@ module c_library
 
     public :: c_access, c_close, c_end, c_execv, c_exit, c_fclose, c_ferror, c_fflush, c_fopen, &
         c_fork, c_fread, c_fwrite, c_getpid, c_getppid, c_isatty, c_kill, c_madvise, c_mkdir, &
-        c_pipe, c_poll, c_puts, c_read, c_readlink, c_realpath, c_remove, c_rename, c_signal, &
+        c_pipe, c_poll, c_puts, c_read, c_realpath, c_remove, c_rename, c_signal, &
         c_strlen, c_strtod, c_truncate, c_wait, c_waitpid, c_write
 
     interface
@@ -17,15 +17,6 @@ module c_library
             character(kind=c_char), intent(in) :: path(*)
             type(c_ptr), intent(in) :: arguments(*)
         end function c_execv
-
-        !> The result is a ssize_t, as wide and signed here.
-        integer(c_size_t) function c_readlink(path, buffer, length) bind(C, name='readlink')
-            import :: c_char, c_size_t
-            implicit none
-            character(kind=c_char), intent(in) :: path(*)
-            character(kind=c_char), intent(inout) :: buffer(*)
-            integer(c_size_t), value, intent(in) :: length
-        end function c_readlink
 
         !> `resolved` has room for PATH_MAX characters. The result is it, or null.
         type(c_ptr) function c_realpath(path, resolved) bind(C, name='realpath')

@@ -4,7 +4,7 @@ module platform
         c_intptr_t, c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : error_unit, int64, output_unit, real64
     use c_library, only : c_access, c_end, c_execv, c_exit, c_fflush, c_isatty, c_madvise, &
-        c_mkdir, c_puts, c_readlink, c_realpath, c_remove, c_rename, c_signal, c_truncate
+        c_mkdir, c_puts, c_realpath, c_remove, c_rename, c_signal, c_truncate
     use printable_text, only : replaced
     implicit none
     private
@@ -153,15 +153,13 @@ contains
         character(len=*), intent(in) :: name
         character(len=:), allocatable :: path
         character(len=4096) :: own
-        integer(c_size_t) :: length
-        integer :: status
 
-        length = c_readlink('/proc/self/exe' // c_null_char, own, len(own, c_size_t))
-        if (length <= 0) then
-            call get_command_argument(0, own, status=status)
-            length = len_trim(own)
+        path = plain_path('/proc/self/exe')
+        if (len(path) == 0) then
+            call get_command_argument(0, own)
+            path = trim(own)
         end if
-        path = own(:index(own(:length), '/', back=.true.)) // name
+        path = path(:index(path, '/', back=.true.)) // name
     end function program_beside
 
     !> Runs another program in place of this one, in the same process: under a launcher of many

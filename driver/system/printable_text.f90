@@ -3,26 +3,53 @@ module printable_text
     implicit none
     private
 
-    public :: lower, printable, replaced
+    public :: growing_text, lower, printable, replaced
+
+    !> A text that is put together word by word.
+    type :: growing_text
+        character(len=:), allocatable, private :: room
+        integer, private :: n = 0
+    contains
+        procedure :: put, text
+    end type growing_text
 
 contains
+
+    pure subroutine put(self, word)
+        class(growing_text), intent(inout) :: self
+        character(len=*), intent(in) :: word
+
+        if (.not. allocated(self%room)) allocate (character(len=1024) :: self%room)
+        do while (self%n + len(word) > len(self%room))
+            self%room = self%room // self%room
+        end do
+        self%room(self%n + 1:self%n + len(word)) = word
+        self%n = self%n + len(word)
+    end subroutine put
+
+    !> What has been put so far.
+    pure function text(self)
+        class(growing_text), intent(in) :: self
+        character(len=self%n) :: text
+
+        if (self%n > 0) text = self%room(:self%n)
+    end function text
 
     !> Cut where it is long; invisible characters are shown as their codes.
     pure function printable(text) result(shown)
         character(len=*), intent(in) :: text
         character(len=:), allocatable :: shown
         integer, parameter :: most = 60
-        character(len=*), parameter :: hex = '0123456789ABCDEF'
-        integer :: code, hidden, i
+        character(len=4) :: code
+        integer :: hidden, i
 
         shown = ''
         hidden = 0   ! bytes of the character that are still to be shown as codes
         do i = 1, len(text)
-            code = iachar(text(i:i))
             if (hidden == 0) hidden = unseen(text(i:))
             if (hidden > 0) then
-                shown = shown // '\x' // hex(code / 16 + 1:code / 16 + 1) &
-                    // hex(mod(code, 16) + 1:mod(code, 16) + 1)
+                write (code, '(a, z2.2)') '\x', iachar(text(i:i))
+                shown = shown // code
                 hidden = hidden - 1
             else
                 shown = shown // text(i:i)

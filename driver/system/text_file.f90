@@ -9,7 +9,7 @@ module text_file
     implicit none
     private
 
-    public :: output_file
+    public :: end_of_file, output_file
 
     real(dp), parameter, public :: gigabyte = 1.0e9_dp   !! [bytes]
 
@@ -88,22 +88,34 @@ contains
     subroutine cut_to_whole_lines(name)
         character(len=*), intent(in) :: name
         integer, parameter :: longest = 4096   ! line
-        character(len=longest) :: tail
-        integer(int64) :: length, first
-        integer :: unit, status, last
+        character(len=:), allocatable :: tail
+        integer(int64) :: length
+        integer :: last
         logical :: done
 
+        call end_of_file(name, longest, tail, length)
+        last = index(tail, new_line('a'), back=.true.)
+        if (last > 0) done = truncate_file(name, length - len(tail) + last)
+    end subroutine cut_to_whole_lines
+
+    !> The last bytes of a file; none if it cannot be read.
+    subroutine end_of_file(name, most, tail, length)
+        character(len=*), intent(in) :: name
+        integer, intent(in) :: most              !! bytes
+        character(len=:), allocatable, intent(out) :: tail
+        integer(int64), intent(out) :: length    !! of the file [bytes]
+        integer :: unit, status
+
+        tail = ''
+        length = 0
         open (newunit=unit, file=name, access='stream', form='unformatted', action='read', &
             status='old', iostat=status)
         if (status /= 0) return
         inquire (unit=unit, size=length)
-        first = max(1_int64, length - longest + 1)
-        last = int(length - first + 1)
-        if (last > 0) read (unit, pos=first, iostat=status) tail(:last)
+        tail = repeat(' ', int(min(length, int(most, int64))))
+        if (len(tail) > 0) read (unit, pos=length - len(tail) + 1, iostat=status) tail
         close (unit)
-        if (status /= 0) return
-        last = index(tail(:last), new_line('a'), back=.true.)
-        if (last > 0) done = truncate_file(name, first - 1 + last)
-    end subroutine cut_to_whole_lines
+        if (status /= 0) tail = ''
+    end subroutine end_of_file
 
 end module text_file

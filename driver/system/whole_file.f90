@@ -8,7 +8,12 @@ module whole_file
     implicit none
     private
 
-    public :: next_line, plain_text, read_whole_file
+    public :: next_line, plain_text, read_whole_file, line_text
+
+    !> One of several.
+    type :: line_text
+        character(len=:), allocatable :: text
+    end type line_text
 
     character(len=*), parameter :: utf8_mark = char(239) // char(187) // char(191)
     character(len=*), parameter :: little_endian_mark = char(255) // char(254)
@@ -22,30 +27,27 @@ contains
         character(len=*), intent(in) :: name
         character(len=:), allocatable, intent(out) :: text
         character(len=:), allocatable, intent(out) :: problem
+        integer, parameter :: most = 536870911   ! in UTF-16 they become half as many again
+        character(len=65536) :: chunk
+        character(len=256) :: message
         character(len=:), allocatable :: bytes
+        type(c_ptr) :: stream
+        integer :: length, taken, unit, status
 
         text = ''
+        problem = ''
         if (is_directory(name)) then
             problem = 'is a directory'
             return
         end if
-        call read_bytes(name, bytes, problem)
-        if (len(problem) == 0) call plain_text(bytes, text, problem)
-    end subroutine read_whole_file
-
-    subroutine read_bytes(name, bytes, problem)
-        character(len=*), intent(in) :: name
-        character(len=:), allocatable, intent(out) :: bytes
-        character(len=:), allocatable, intent(out) :: problem
-        integer, parameter :: most = 536870911   ! in UTF-16 they become half as many again
-        character(len=65536) :: chunk
-        type(c_ptr) :: stream
-        integer :: length, taken
-
-        problem = ''
         stream = c_fopen(name // c_null_char, 'r' // c_null_char)
         if (.not. c_associated(stream)) then
-            problem = why_not_opened(name)
+            ! the operating system's reason, which Fortran tells and C keeps in a macro
+            message = 'cannot be opened'
+            open (newunit=unit, file=name, status='old', action='read', iostat=status, &
+                iomsg=message)
+            if (status == 0) close (unit)
+            problem = trim(message)
             return
         end if
         allocate (character(len=len(chunk)) :: bytes)
@@ -61,8 +63,8 @@ contains
         if (c_ferror(stream) /= 0) problem = 'cannot be read'
         if (length > most) problem = 'is too large'
         if (c_fclose(stream) /= 0) problem = 'cannot be read'
-        bytes = bytes(:length)
-    end subroutine read_bytes
+        if (len(problem) == 0) call plain_text(bytes(:length), text, problem)
+    end subroutine read_whole_file
 
     !> Moves on to the next line of a text. What follows the last line feed is one, too: there
     !> `last` is the end of the text.
@@ -79,19 +81,6 @@ contains
         if (length < 0) last = len(text)
         line = line + 1
     end subroutine next_line
-
-    !> The operating system's reason, which Fortran tells and C keeps in a macro.
-    function why_not_opened(name) result(problem)
-        character(len=*), intent(in) :: name
-        character(len=:), allocatable :: problem
-        character(len=256) :: message
-        integer :: unit, status
-
-        message = 'cannot be opened'
-        open (newunit=unit, file=name, status='old', action='read', iostat=status, iomsg=message)
-        if (status == 0) close (unit)
-        problem = trim(message)
-    end function why_not_opened
 
     !> Takes a byte-order mark off, turns UTF-16 into UTF-8, and ends each line by a line feed.
     !> UTF-16 without a mark shows in its first letters, each of which has a byte that is zero. What
@@ -117,7 +106,12 @@ contains
         else if (is_utf8(bytes)) then
             text = bytes
         else
-            call decode_latin_1(bytes, text)
+            allocate (character(len=2 * len(bytes)) :: text)   ! Latin-1: characters 0 to 255
+            n = 0
+            do i = 1, len(bytes)
+                call append_utf8(iachar(bytes(i:i)), text, n)
+            end do
+            text = text(:n)
         end if
 
         n = 0
@@ -171,20 +165,6 @@ contains
         end do
         yes = following == 0
     end function is_utf8
-
-    !> Turns Latin-1, whose bytes are the first 256 characters, into UTF-8.
-    pure subroutine decode_latin_1(bytes, text)
-        character(len=*), intent(in) :: bytes
-        character(len=:), allocatable, intent(out) :: text
-        integer :: n, i
-
-        allocate (character(len=2 * len(bytes)) :: text)
-        n = 0
-        do i = 1, len(bytes)
-            call append_utf8(iachar(bytes(i:i)), text, n)
-        end do
-        text = text(:n)
-    end subroutine decode_latin_1
 
     !> Turns UTF-16 into UTF-8. What is no character becomes U+FFFD.
     pure subroutine decode_utf16(bytes, low, text)

@@ -6,6 +6,7 @@ module check
     use fault_study, only : check_by_engine
     use input_kind, only : fitting, refuse_other_verb, verb_of
     use namelist_input, only : namelist_file
+    use number_text, only : whole_text
     use platform, only : report
     use profile_reader, only : names_netcdf
     use point_reader, only : read_point_settings
@@ -37,7 +38,8 @@ contains
         character(len=:), allocatable :: verb
         real(dp), parameter :: worth_telling = 0.1_dp   !! [GB]
         character(len=:), allocatable :: problem
-        character(len=80) :: extent, size_text
+        character(len=:), allocatable :: extent
+        character(len=80) :: size_text
         logical :: refused
 
         exit_status = exit_bad_input
@@ -50,32 +52,32 @@ contains
         case ('point')
             call read_point_settings(file, path)
             if (has_faults(file)) return
-            write (extent, '(i0, a)') nint(path%loading%increments()), ' increments'
+            extent = whole_text(nint(path%loading%increments())) // ' increments'
         case ('sweep')
             call read_sweep(file, plan)
             if (has_faults(file)) return
-            write (extent, '(i0, a)') size(plan%runs), ' combinations'
+            extent = whole_text(size(plan%runs)) // ' combinations'
         case ('fault')
             if (names_netcdf(file)) call check_by_engine(input)
             call read_fault_plan(file, plane)
             if (has_faults(file)) return
-            write (extent, '(i0, a, i0, a)') plane%nx, ' x ', plane%nz, ' cells'
+            extent = whole_text(plane%nx) // ' x ' // whole_text(plane%nz) // ' cells'
         case default
             call read_settings(file, run)
             if (has_faults(file)) return
             extent = 'adaptive steps'
-            if (.not. run%adaptive) write (extent, '(i0, a)') run%n_steps, ' steps'
+            if (.not. run%adaptive) extent = whole_text(run%n_steps) // ' steps'
             size_text = ''
             if (expected_bytes(run) > worth_telling * gigabyte) write (size_text, '(a, f0.2, a)') &
                 ', tables of about ', expected_bytes(run) / gigabyte, ' GB'
-            extent = trim(extent) // size_text
+            extent = extent // trim(size_text)
             call check_table_size(run, problem)
             if (len(problem) > 0) then
                 write (error_unit, '(3a)') input, ': ', problem
                 return
             end if
         end select
-        write (report, '(5a)') input, ': valid, ', trim(extent), ', for stickslip ', verb
+        write (report, '(5a)') input, ': valid, ', extent, ', for stickslip ', verb
         exit_status = exit_done
     end subroutine check_input
 

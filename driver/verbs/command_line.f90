@@ -28,6 +28,7 @@ contains
 
     subroutine read_command_line(wanted)
         type(command), intent(out) :: wanted
+        integer :: dot
 
         wanted%problem = ''
         wanted%input = ''
@@ -60,7 +61,9 @@ contains
         if (wanted%verb == 'check' .and. (len(wanted%output) > 0 .or. wanted%quiet &
             .or. .not. wanted%plot .or. wanted%resume &
             .or. wanted%verify)) wanted%problem = 'check takes an input file and nothing else'
-        wanted%stem = stem_of(wanted%input)
+        wanted%stem = wanted%input(index(wanted%input, '/', back=.true.) + 1:)
+        dot = index(wanted%stem, '.', back=.true.)   ! of the last extension
+        if (dot > 1) wanted%stem = wanted%stem(:dot - 1)
         if (len(wanted%output) == 0) wanted%output = wanted%stem // '_out'
     end subroutine read_command_line
 
@@ -91,8 +94,10 @@ contains
                 i = i + 1
                 if (len(wanted%output) == 0) wanted%problem = '--output needs a directory'
             case ('--jobs')
-                call take_jobs(wanted, argument(i))
+                wanted%jobs = whole_number(argument(i))
                 i = i + 1
+                if (wanted%jobs == 0) wanted%problem = '--jobs needs a whole number from 1 to 9999'
+                if (wanted%verb /= 'sweep') wanted%problem = '--jobs is for sweep'
             case ('--part')
                 call take_part(wanted, argument(i))
                 i = i + 1
@@ -116,15 +121,6 @@ contains
             wanted%input = word
         end if
     end subroutine take_input
-
-    subroutine take_jobs(wanted, word)
-        type(command), intent(inout) :: wanted
-        character(len=*), intent(in) :: word
-
-        wanted%jobs = whole_number(word)
-        if (wanted%jobs == 0) wanted%problem = '--jobs needs a whole number from 1 to 9999'
-        if (wanted%verb /= 'sweep') wanted%problem = '--jobs is for sweep'
-    end subroutine take_jobs
 
     subroutine take_part(wanted, word)
         type(command), intent(inout) :: wanted
@@ -158,17 +154,6 @@ contains
         allocate (character(len=length) :: word)
         if (length > 0) call get_command_argument(i, word)
     end function argument
-
-    !> A file's name without its directories and its last extension.
-    pure function stem_of(path) result(stem)
-        character(len=*), intent(in) :: path
-        character(len=:), allocatable :: stem
-        integer :: dot
-
-        stem = path(index(path, '/', back=.true.) + 1:)
-        dot = index(stem, '.', back=.true.)
-        if (dot > 1) stem = stem(:dot - 1)
-    end function stem_of
 
     subroutine print_version()
         write (report, '(2a)') 'stickslip ', friction_version

@@ -126,13 +126,7 @@ contains
         real(dp), allocatable :: rows(:, :)
         integer :: i
 
-        ! gfortran (12) keeps the lengths of some functions' results in static memory, and reading
-        ! calls such functions: one thread at a time.
-        !$omp critical (stickslip_reading)
-        call read_text(name, text, run, this%faults)
-        !$omp end critical (stickslip_reading)
-        this%failure = c_null_char
-        this%warnings = c_null_char
+        call read_text(name, text, run, this)
         status = exit_bad_input
         if (len(this%faults) > 1) return
 
@@ -159,33 +153,20 @@ contains
         this%failure = result%failure // c_null_char
     end subroutine run_text
 
-    !> `stickslip_stability` of include/stickslip_program.h.
+    !> `stickslip_stability` of include/stickslip_program.h. Of the reasons there is a line a row.
     function c_stability(name, text, result) result(status) bind(C, name='stickslip_stability')
         type(c_ptr), value, intent(in) :: name, text   !! C texts
         type(c_ptr), value, intent(in) :: result       !! place of a pointer
         integer(c_int) :: status
         type(run_result), pointer :: this
-
-        status = friction_null_pointer
-        call make_result(name, text, result, this)
-        if (.not. associated(this)) return
-        call stability_of_text(fortran_text(name), fortran_text(text), this, status)
-    end function c_stability
-
-    !> Reads, validates, and tells of steady sliding; `reasons` has a line a row.
-    subroutine stability_of_text(name, text, this, status)
-        character(len=*), intent(in) :: name, text
-        type(run_result), intent(inout) :: this
-        integer, intent(out) :: status   !! an exit status of the program
         type(settings) :: run
         type(steady_answer), allocatable :: answers(:)
         integer :: i, k
 
-        !$omp critical (stickslip_reading)
-        call read_text(name, text, run, this%faults)
-        !$omp end critical (stickslip_reading)
-        this%failure = c_null_char
-        this%warnings = c_null_char
+        status = friction_null_pointer
+        call make_result(name, text, result, this)
+        if (.not. associated(this)) return
+        call read_text(fortran_text(name), fortran_text(text), run, this)
         this%reasons = c_null_char
         status = exit_bad_input
         if (len(this%faults) > 1) return
@@ -196,35 +177,42 @@ contains
         status = exit_failed
         do i = 1, size(answers)
             call this%steady%add(answers(i)%numbers())
-            associate (result => answers(i)%result)
-                if (result%verdict /= undecided) status = exit_done
-                do k = 1, size(result%eigenvalues)
-                    call this%eigenvalues%add([real(i, dp), eigenvalue_row(result%eigenvalues(k))])
+            associate (steady => answers(i)%result)
+                if (steady%verdict /= undecided) status = exit_done
+                do k = 1, size(steady%eigenvalues)
+                    call this%eigenvalues%add([real(i, dp), eigenvalue_row(steady%eigenvalues(k))])
                 end do
             end associate
         end do
         do i = size(answers), 1, -1
             this%reasons = answers(i)%result%problem // new_line('a') // this%reasons
         end do
-    end subroutine stability_of_text
+    end function c_stability
 
-    subroutine read_text(name, text, run, faults)
+    !> Reads the input of a run; its faults are left in the result.
+    subroutine read_text(name, text, run, this)
         character(len=*), intent(in) :: name, text
         type(settings), intent(out) :: run
-        character(len=:), allocatable, intent(out) :: faults   !! ends with a null character
+        type(run_result), intent(inout) :: this
         type(namelist_file) :: file
         character(len=:), allocatable :: problem
         logical :: refused
 
+        this%failure = c_null_char
+        this%warnings = c_null_char
+        ! gfortran (12) keeps the lengths of some functions' results in static memory, and reading
+        ! calls such functions: one thread at a time.
+        !$omp critical (stickslip_reading)
         call read_namelist_text(name, text, file, problem)
         if (len(problem) > 0) then
-            faults = name // ': ' // problem // new_line('a') // c_null_char
-            return
+            this%faults = name // ': ' // problem // new_line('a')
+        else
+            call refuse_other_verb('run', file, refused)
+            if (.not. refused) call read_settings(file, run)
+            this%faults = file%describe_faults()
         end if
-        call refuse_other_verb('run', file, refused)
-        if (.not. refused) call read_settings(file, run)
-        faults = c_null_char
-        if (size(file%faults) > 0) faults = file%describe_faults() // c_null_char
+        this%faults = this%faults // c_null_char
+        !$omp end critical (stickslip_reading)
     end subroutine read_text
 
     !> `stickslip_groups` of include/stickslip_program.h.
