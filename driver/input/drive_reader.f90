@@ -6,6 +6,7 @@ module drive_reader
     use loading_programme, only : programme
     use namelist_input, only : any_number, at_least, above, namelist_file
     use number_reader, only : largest
+    use number_text, only : whole_text
     implicit none
     private
 
@@ -245,10 +246,8 @@ contains
     pure function counted(n) result(text)
         integer, intent(in) :: n
         character(len=:), allocatable :: text
-        character(len=20) :: buffer
 
-        write (buffer, '(i0, a)') n, ' value'
-        text = trim(buffer)
+        text = whole_text(n) // ' value'
         if (n /= 1) text = text // 's'
     end function counted
 

@@ -89,8 +89,8 @@ contains
         procedure(table_reader), optional :: read_netcdf
         type(profile), allocatable :: profiles(:)
         real(dp), allocatable :: x(:), z(:), props(:)
-        real(dp) :: normal
-        integer :: faults_before, i, k
+        real(dp) :: normal, value(1)
+        integer :: faults_before, i, j, k
         logical :: drops
 
         call take_profiles(file, group, axes, profiles, read_netcdf)
@@ -100,7 +100,10 @@ contains
         call join_nodes(profiles, x, z)
         do k = 1, size(z)
             do i = 1, size(x)
-                call set_values(file, profiles, x(i), z(k))
+                do j = 1, size(profiles)   ! the names of files
+                    value = profiles(j)%map%at(x(i), z(k))
+                    call put_number(file, profiles(j)%group, profiles(j)%key, value(1))
+                end do
                 call read_friction(file, props)
                 call file%get_real(group, 'normal_traction', normal, above(0.0_dp))
                 if (size(file%faults) > faults_before) then
@@ -149,20 +152,6 @@ contains
             deallocate (spring%values)
         end do
     end subroutine add_springs
-
-    !> The constants of one node take the place of the names of files.
-    subroutine set_values(file, profiles, x, z)
-        type(namelist_file), intent(inout) :: file
-        type(profile), intent(in) :: profiles(:)
-        real(dp), intent(in) :: x, z
-        real(dp) :: value(1)
-        integer :: j
-
-        do j = 1, size(profiles)
-            value = profiles(j)%map%at(x, z)
-            call put_number(file, profiles(j)%group, profiles(j)%key, value(1))
-        end do
-    end subroutine set_values
 
     !> Where it is that constants of a profile are refused.
     subroutine tell_node(file, faults_before, profiles, x, z)

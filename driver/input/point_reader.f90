@@ -7,6 +7,7 @@ module point_reader
     use law_input, only : read_friction
     use loading_path, only : path
     use namelist_input, only : any_number, at_least, between, namelist_file
+    use number_text, only : whole_text
     use point_settings, only : point_run
     use unit_reader, only : read_units
     implicit none
@@ -97,11 +98,10 @@ contains
         character(len=*), intent(in) :: key
         integer, intent(in) :: length   !! of the list
         integer, intent(in) :: n        !! segments; 0 where that is unknown
-        character(len=80) :: text
 
         if (n == 0 .or. length <= 1 .or. length == n) return
-        write (text, '(a, i0, a)') 'must have one value or ', n, ', as many as duration'
-        call file%reject(group, key, trim(text))
+        call file%reject(group, key, 'must have one value or ' // whole_text(n) &
+            // ', as many as duration')
     end subroutine check_length
 
     pure function spread_out(values, n) result(list)

@@ -146,11 +146,11 @@ contains
         integer :: faults_before, j
 
         faults_before = size(file%faults)
-        call read_columns(file, group, key, axes, names, read_in, read_netcdf)
+        call read_columns()
         sound = size(file%faults) == faults_before .and. allocated(read_in%values)
         if (.not. sound) return
-        map%x = nodes_in(read_in, axes(1))
-        map%z = nodes_in(read_in, axes(2))
+        map%x = nodes_in(axes(1))
+        map%z = nodes_in(axes(2))
         if (read_in%column(trim(axes(2))) == 0) then
             call file%reject(group, key, "its file has no column '" // trim(axes(2)) // "'")
         else if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
@@ -167,71 +167,63 @@ contains
                 "its file has no column '" // trim(names(j)) // "'")
         end do
         sound = size(file%faults) == faults_before
-        if (sound) call fill_map(read_in, axes, names, map)
+        if (sound) call fill_map()
+
+    contains
+
+        subroutine read_columns()
+            type(column_request) :: requests(size(names) + 2)
+            character(len=:), allocatable :: name
+            integer :: first, i
+
+            call file%get_text(group, key, name)
+            if (len(name) == 0) return
+            if (name(1:1) == '@') name = name(2:)
+            if (len(name) == 0) then
+                call file%reject(group, key, 'must name a file')
+                return
+            end if
+            requests(1)%name = trim(axes(1))
+            requests(2)%name = trim(axes(2))
+            do i = 1, size(names)
+                requests(2 + i)%name = trim(names(i))
+            end do
+            first = merge(2, 1, axes(1) == '')
+            if (.not. is_netcdf(name)) then
+                call read_table(file%beside(name), requests(first:), read_in)
+            else if (present(read_netcdf)) then
+                call read_netcdf(file%beside(name), requests(first:), read_in)
+            else
+                call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
+                return
+            end if
+            call refuse_table(file, group, key, read_in)
+        end subroutine read_columns
+
+        !> Places along an axis that a file has; 0 if it does not have the axis.
+        pure function nodes_in(axis) result(nodes)
+            character(len=*), intent(in) :: axis
+            real(dp), allocatable :: nodes(:)
+
+            nodes = [0.0_dp]
+            if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
+                read_in%numbers(trim(axis)))
+        end function nodes_in
+
+        subroutine fill_map()
+            integer :: columns(size(names)), along(2), i, k, row
+
+            columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
+            along = [(read_in%column(trim(axes(j))), j = 1, 2)]
+            allocate (map%values(size(names), size(map%x), size(map%z)))
+            i = 1
+            do row = 1, size(read_in%values, 2)
+                if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
+                k = nodes_up_to(map%z, read_in%values(along(2), row))
+                map%values(:, i, k) = read_in%values(columns, row)
+            end do
+        end subroutine fill_map
+
     end subroutine read_map
-
-    subroutine read_columns(file, group, key, axes, names, read_in, read_netcdf)
-        type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group, key
-        character(len=*), intent(in) :: axes(2)
-        character(len=*), intent(in) :: names(:)
-        type(csv), intent(out) :: read_in
-        procedure(table_reader), optional :: read_netcdf
-        type(column_request) :: requests(size(names) + 2)
-        character(len=:), allocatable :: name
-        integer :: first, i
-
-        call file%get_text(group, key, name)
-        if (len(name) == 0) return
-        if (name(1:1) == '@') name = name(2:)
-        if (len(name) == 0) then
-            call file%reject(group, key, 'must name a file')
-            return
-        end if
-        requests(1)%name = trim(axes(1))
-        requests(2)%name = trim(axes(2))
-        do i = 1, size(names)
-            requests(2 + i)%name = trim(names(i))
-        end do
-        first = merge(2, 1, axes(1) == '')
-        if (.not. is_netcdf(name)) then
-            call read_table(file%beside(name), requests(first:), read_in)
-        else if (present(read_netcdf)) then
-            call read_netcdf(file%beside(name), requests(first:), read_in)
-        else
-            call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
-            return
-        end if
-        call refuse_table(file, group, key, read_in)
-    end subroutine read_columns
-
-    !> Places along an axis that a file has; 0 if it does not have the axis.
-    pure function nodes_in(read_in, axis) result(nodes)
-        type(csv), intent(in) :: read_in
-        character(len=*), intent(in) :: axis
-        real(dp), allocatable :: nodes(:)
-
-        nodes = [0.0_dp]
-        if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
-            read_in%numbers(trim(axis)))
-    end function nodes_in
-
-    subroutine fill_map(read_in, axes, names, map)
-        type(csv), intent(in) :: read_in
-        character(len=*), intent(in) :: axes(2)
-        character(len=*), intent(in) :: names(:)
-        type(map_on_grid), intent(inout) :: map
-        integer :: columns(size(names)), along(2), i, j, k, row
-
-        columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
-        along = [(read_in%column(trim(axes(j))), j = 1, 2)]
-        allocate (map%values(size(names), size(map%x), size(map%z)))
-        i = 1
-        do row = 1, size(read_in%values, 2)
-            if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
-            k = nodes_up_to(map%z, read_in%values(along(2), row))
-            map%values(:, i, k) = read_in%values(columns, row)
-        end do
-    end subroutine fill_map
 
 end module profile_reader

@@ -43,22 +43,32 @@ contains
         call read_drive(file, normal, run%drive)
         call read_initial(file, run)
         call read_time(file, run)
-        call check_scale(file, run)
+        if (run%adaptive .and. size(file%faults) == 0) then   ! a part of nothing cannot be met
+            if (.not. typical_strength(run%props, run%drive%largest_normal()) > 0.0_dp) call &
+                file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 ' &
+                // 'here')
+        end if
         if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
             'normal_mass', 'is for one block')
         call read_contact(file, run)
-        call check_damper(file, run)
-        call check_massless(file, run)
-        call check_pressing(file, run)
+        if (run%adaptive .and. allocated(run%drive%normal)) then
+            call check_damper(file, run)
+            call check_massless(file, run)
+            call check_pressing(file, run)
+        end if
         call derive_slip_rate(file, run)
-        call read_events(file, run)
+        call file%get_real('events', 'drop', run%event_drop, above(0.0_dp), default=1.0e-3_dp)
+        if (file%given('events', 'slip_rate')) call file%get_real('events', 'slip_rate', &
+            run%event_slip_rate, above(0.0_dp))
         call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
             default=10.0_dp)
         call read_units(file, run%units)
         call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
             default=60.0_dp)
-        call read_fields(file, run)
+        call file%get_integer('output', 'fields', run%fields, at_least(0.0_dp), default=0)
+        if (run%fields > 0 .and. run%chain%n_blocks == 1) call file%reject('output', 'fields', &
+            'needs a chain of two or more blocks')
         call file%refuse_unknown()
         run%fingerprint = fingerprint_of(file%listing(without='sweep'), run)
     end subroutine read_settings
@@ -90,16 +100,6 @@ contains
             'tilt_stiffness', 'must not exceed sqrt(stiffness normal_stiffness) in magnitude')
     end subroutine read_normal_motion
 
-    !> What counts as a slip event.
-    subroutine read_events(file, run)
-        type(namelist_file), intent(inout) :: file
-        type(settings), intent(inout) :: run
-
-        call file%get_real('events', 'drop', run%event_drop, above(0.0_dp), default=1.0e-3_dp)
-        if (file%given('events', 'slip_rate')) call file%get_real('events', 'slip_rate', &
-            run%event_slip_rate, above(0.0_dp))
-    end subroutine read_events
-
     !> A number that is another one for any other input, but for keys that change no results.
     pure function fingerprint_of(listing, run) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
@@ -115,16 +115,6 @@ contains
                 drive%acceleration, drive%normal, drive%normal_rate], [number]), number)
         end associate
     end function fingerprint_of
-
-    !> A tolerance that is a part of nothing cannot be met.
-    subroutine check_scale(file, run)
-        type(namelist_file), intent(inout) :: file
-        type(settings), intent(in) :: run
-
-        if (.not. run%adaptive .or. size(file%faults) > 0) return
-        if (typical_strength(run%props, run%drive%largest_normal()) > 0.0_dp) return
-        call file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 here')
-    end subroutine check_scale
 
     !> When rows of the time series are due.
     subroutine read_rows(file, run)
@@ -166,15 +156,6 @@ contains
             // 'in an event. It has no default where friction does not fall from static to ' &
             // 'kinetic and the drive never moves')
     end subroutine derive_slip_rate
-
-    subroutine read_fields(file, run)
-        type(namelist_file), intent(inout) :: file
-        type(settings), intent(inout) :: run
-
-        call file%get_integer('output', 'fields', run%fields, at_least(0.0_dp), default=0)
-        if (run%fields > 0 .and. run%chain%n_blocks == 1) call file%reject('output', 'fields', &
-            'needs a chain of two or more blocks')
-    end subroutine read_fields
 
     !> How the block starts.
     subroutine read_initial(file, run)
@@ -322,8 +303,6 @@ contains
         character(len=*), parameter :: group = 'friction', key = 'eta_t'
         type(facts) :: law
 
-        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
-        if (.not. run%adaptive) return
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
         if (run%newmark .or. .not. run%one_by_itself()) then
@@ -346,10 +325,8 @@ contains
         type(facts) :: law
         real(dp) :: falls
 
-        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
-        if (.not. run%adaptive .or. run%mass > 0.0_dp) return
         law = friction_facts(run%props)
-        if (run%newmark .or. law%damping > 0.0_dp) return
+        if (run%mass > 0.0_dp .or. run%newmark .or. law%damping > 0.0_dp) return
         falls = run%area * law%rate_weakening * run%drive%largest_normal()
         if (falls > 0.0_dp .and. run%damping <= falls) then
             call file%reject(group, key, 'must exceed area d_c (mu_s - mu_k) normal_traction ' &
@@ -369,9 +346,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(settings), intent(in) :: run
 
-        if (.not. (allocated(run%props) .and. allocated(run%drive%normal))) return
-        if (.not. run%adaptive .or. run%one_by_itself() .and. .not. run%newmark) return
-        if (.not. run%load_vanishes()) return
+        if (run%one_by_itself() .and. .not. run%newmark .or. .not. run%load_vanishes()) return
         if (pressure_effect(run%props, run%chain%constants) <= largest_pressure_effect) return
         call file%reject('friction', 'alpha', 'must not exceed 28 b with a normal traction that ' &
             // 'vanishes in adaptive steps (&time rtol) of chains, or with beta, gamma or ' &
@@ -392,7 +367,6 @@ contains
         if (.not. run%adaptive .or. run%newmark .or. .not. run%one_by_itself()) call file%reject( &
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
             // 'rho_infinity')
-        if (.not. allocated(run%props)) return
         if (has_r(run%props)) call file%reject(group, key, &
             'is not for the law subloading, whose R needs the contact spring')
         law = friction_facts(run%props)
