@@ -141,35 +141,22 @@ contains
             call insert(self, k, this)
         end if
         if (k == self%count) return
-        if (self%events(k + 1)%first <= self%events(k)%last + 1) call join(self, k)
+        if (self%events(k + 1)%first > self%events(k)%last + 1) return
+        call absorb(self%events(k), self%events(k + 1))   ! the two are one
+        self%events(k + 1:self%count - 1) = self%events(k + 2:self%count)
+        self%count = self%count - 1
     end subroutine take_in
 
     pure subroutine insert(self, k, this)
         class(chain_finder), intent(inout) :: self
         integer, intent(in) :: k
         type(chain_event), intent(in) :: this
-        integer :: i
 
         if (self%count == size(self%events)) self%events = [self%events, self%events]   ! room
-        do i = self%count, k, -1
-            self%events(i + 1) = self%events(i)
-        end do
+        self%events(k + 1:self%count + 1) = self%events(k:self%count)
         self%count = self%count + 1
         self%events(k) = this
     end subroutine insert
-
-    !> Events `k` and `k + 1` are one.
-    pure subroutine join(self, k)
-        class(chain_finder), intent(inout) :: self
-        integer, intent(in) :: k
-        integer :: i
-
-        call absorb(self%events(k), self%events(k + 1))
-        do i = k + 1, self%count - 1
-            self%events(i) = self%events(i + 1)
-        end do
-        self%count = self%count - 1
-    end subroutine join
 
     !> Adds to an event another one.
     pure subroutine absorb(event, other)

@@ -54,12 +54,6 @@ module steady_sliding
         real(dp) :: rate_by_memory(2, 2) = 0.0_dp
     end type contact_response
 
-    !> Keys of the slider and its drive on which steady sliding depends.
-    character(len=*), parameter :: slider_keys(11) = [character(len=23) :: 'slider%mass', &
-        'slider%stiffness', 'slider%damping', 'slider%area', 'slider%normal_traction', &
-        'drive%normal', 'drive%velocity', 'slider%normal_mass', 'slider%normal_stiffness', &
-        'slider%normal_damping', 'slider%tilt_stiffness']
-
     !> What a law's traction and rates can be taken to depend on.
     integer, parameter :: on_mu = 1, on_ratio = 2, on_memory = 3, on_ln_memory = 4, &
         on_ln_rate = 5, on_pressure = 6, on_loading = 7
@@ -121,12 +115,14 @@ contains
     end subroutine take_piece
 
     !> Does steady sliding depend on a key of the input, and does this program know how?
-    pure function knows(self, key) result(known)
-        class(sliding_case), intent(in) :: self
+    function knows(self, key) result(known)
+        class(sliding_case), target, intent(in) :: self
         character(len=*), intent(in) :: key   !! group%key
         logical :: known
+        real(dp), pointer :: number
 
-        known = any(key == slider_keys) .or. place_of(self, key) > 0
+        call find_number(self, key, number)
+        known = associated(number)
     end function knows
 
     !> The value of a key that is known.
@@ -153,12 +149,13 @@ contains
         if (place_of(self, key) > 0) call self%take_constants()
     end subroutine set
 
-    !> Where the value of a key that is known is kept.
+    !> Where the value of a key is kept, on which steady sliding depends; null for another key.
     subroutine find_number(this, key, number)
         type(sliding_case), target, intent(in) :: this
         character(len=*), intent(in) :: key   !! group%key
         real(dp), pointer, intent(out) :: number
 
+        nullify (number)
         select case (key)
         case ('slider%mass')
             number => this%mass
@@ -181,7 +178,7 @@ contains
         case ('slider%tilt_stiffness')
             number => this%across%tilt
         case default
-            number => this%props(place_of(this, key))
+            if (place_of(this, key) > 0) number => this%props(place_of(this, key))
         end select
     end subroutine find_number
 

@@ -16,7 +16,10 @@ module step_sums
         real(dp) :: spring(2) = 0.0_dp     !! force of the drive springs [F]
         real(dp) :: slip(2) = 0.0_dp       !! accumulated [L]
         real(dp) :: drag = 0.0_dp          !! twice the mean velocity times the way [L^2/T]
-        real(dp) :: let_go = 0.0_dp        !! see `let_go_by` [F L]
+        real(dp) :: let_go = 0.0_dp        !! what contact springs still held when their contacts
+                                           !! opened, which nothing gets back; and what the drive
+                                           !! spring of a block without mass and damping held, which
+                                           !! follows at once [F L]
         real(dp) :: jumped = 0.0_dp        !! see `add_jump` [F L]
         real(dp) :: relaxed = 0.0_dp       !! by dampers after that [F L]
         real(dp) :: fastest = 0.0_dp       !! largest velocity at the end, no sum [L/T]
@@ -44,8 +47,12 @@ contains
             sums%slip = sums%slip + [old%statev(i, statev_slip), new%statev(i, statev_slip)]
             sums%drag = sums%drag + (old%v(i) + new%v(i)) * (new%x(i) - old%x(i))
             sums%fastest = max(sums%fastest, abs(new%v(i)))
-            if (new%statev(i, statev_status) >= open) call let_go_by(system, old, new, i, &
-                sums%let_go)
+            if (new%statev(i, statev_status) >= open) then
+                sums%let_go = sums%let_go + 0.5_dp * system%area * alpha_of(system, i) &
+                    * old%statev(i, statev_u_et)**2
+                if (.not. (system%mass > 0.0_dp .or. system%damping > 0.0_dp)) sums%let_go = &
+                    sums%let_go + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / system%stiffness
+            end if
             slip = new%statev(i, statev_slip) - old%statev(i, statev_slip)
             back = abs(old%statev(i, statev_u_et)) - abs(new%statev(i, statev_u_et))
             sums%most_slip = max(sums%most_slip, slip)
@@ -62,20 +69,6 @@ contains
         alpha = system%props(prop_alpha_t)
         if (allocated(system%constants)) alpha = system%constants(i, prop_alpha_t)
     end function alpha_of
-
-    !> Adds what the contact spring of a block still held when its contact opened, energy that
-    !> nothing gets back; and what the drive spring of a block without mass and damping held, which
-    !> follows at once.
-    pure subroutine let_go_by(system, old, new, i, energy)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old, new
-        integer, intent(in) :: i              !! block
-        real(dp), intent(inout) :: energy     !! [F L]
-
-        energy = energy + 0.5_dp * system%area * alpha_of(system, i) * old%statev(i, statev_u_et)**2
-        if (system%mass > 0.0_dp .or. system%damping > 0.0_dp) return
-        energy = energy + 0.5_dp * (old%spring(i)**2 - new%spring(i)**2) / system%stiffness
-    end subroutine let_go_by
 
     !> Adds what a contact spring gives up at once where friction falls, and with it the drive
     !> spring of a block without mass: of it the states of friction count too little, however short

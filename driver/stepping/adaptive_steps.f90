@@ -248,7 +248,8 @@ contains
             new%normal = finest_end%normal
             new%load = finest_end%load
             if ((self%system%mass > 0.0_dp .and. self%stiffness * (new%time - old%time)**2 &
-                > self%system%mass) .or. opens_or_closes(self%system, old, self%ends)) then
+                > self%system%mass) .or. (self%system%across%free() .and. any((self%ends%normal &
+                > 0.0_dp) .neqv. old%normal > 0.0_dp))) then   ! it leaves the base or comes back
                 call blend(self%ends, finest, new)
             else
                 call blend(self%ends, [-self%part, 1.0_dp + self%part], new)
@@ -257,7 +258,15 @@ contains
                 associate (mu => new%statev(i, statev_mu), r => new%statev(i, statev_r), &
                     law => self%laws(min(i, size(self%laws))))
                     if (nint(self%ends(1)%statev(i, statev_status)) /= nint(finest_end%statev(i, &
-                        statev_status)) .or. is_beyond(law, mu)) call keep_block(finest_end, i, new)
+                        statev_status)) .or. is_beyond(law, mu)) then
+                        ! where it sticks in the whole step and slips in the halves, or the other
+                        ! way round, they are not of one smooth motion
+                        new%x(i) = finest_end%x(i)
+                        new%v(i) = finest_end%v(i)
+                        new%v_n = finest_end%v_n
+                        new%friction(i) = finest_end%friction(i)
+                        new%statev(i, :) = finest_end%statev(i, :)
+                    end if
                     if (law%traits%memory == 1) then
                         mu = min(law%largest_coefficient, max(law%kinetic_coefficient, mu))
                         r = min(1.0_dp, max(0.0_dp, r))
@@ -291,29 +300,6 @@ contains
             - law%largest_coefficient > round_off * law%largest_coefficient .or. &
             law%kinetic_coefficient - mu > round_off * law%kinetic_coefficient)
     end function is_beyond
-
-    !> Block `i` as a state has it: where it sticks in the whole step and slips in the halves, or
-    !> the other way round, they are not of one smooth motion.
-    pure subroutine keep_block(state, i, mixed)
-        type(slider_state), intent(in) :: state
-        integer, intent(in) :: i
-        type(slider_state), intent(inout) :: mixed
-
-        mixed%x(i) = state%x(i)
-        mixed%v(i) = state%v(i)
-        mixed%v_n = state%v_n
-        mixed%friction(i) = state%friction(i)
-        mixed%statev(i, :) = state%statev(i, :)
-    end subroutine keep_block
-
-    !> Does a block that moves across the interface leave the base or come back to it?
-    pure function opens_or_closes(system, old, ends) result(yes)
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old, ends(2)
-        logical :: yes
-
-        yes = system%across%free() .and. any((ends%normal > 0.0_dp) .neqv. old%normal > 0.0_dp)
-    end function opens_or_closes
 
     !> Weighted sum of states, but for their times, drives and loads.
     pure subroutine blend(states, weights, mixed)

@@ -3,7 +3,7 @@
 module chain_rates
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_programme, only : programme
-    use slider_rates, only : controlled, extension, slider_equations, unknowns, velocity
+    use slider_rates, only : controlled, extension, slider_equations, velocity
     use slider_system, only : ends_fixed, ends_free, slider
     implicit none
     private

@@ -17,7 +17,7 @@ module time_integrator
     !> Room for a step, kept from one to the next; one number a block.
     type :: workspace
         real(dp), allocatable, dimension(:) :: dx, dx_old, correction, residual, tangent, &
-            rest_of_old
+            rest_of_old   !! what the old state adds to the balance of forces
         type(chain_matrix) :: matrix
     end type workspace
 
@@ -121,7 +121,12 @@ contains
         else
             self%work%dx = dt * old%v + 0.5_dp * dt**2 * old%a
         end if
-        call weigh_old_state(self, system, old)
+        self%work%rest_of_old = 0.0_dp
+        if (self%now%inertial .and. max(abs(self%alpha_f), abs(self%alpha_m)) > 0.0_dp) then
+            self%work%rest_of_old = self%alpha_f * (old%spring - system%damping * old%v &
+                - old%friction) - self%alpha_m * system%mass * old%a
+            call system%add_coupling(old%x, self%alpha_f, self%work%rest_of_old)
+        end if
         call iterate(self, system, old, new, report, balanced)
         if (.not. balanced) call search(self, system, old, new, report, balanced)
         if (report%status < 0) return
@@ -316,20 +321,6 @@ contains
         if ((newton - self%low) * (newton - self%high) < 0.0_dp) place = newton
     end subroutine narrow
 
-    !> What the old state adds to the balance of forces.
-    subroutine weigh_old_state(self, system, old)
-        class(newmark), intent(inout) :: self
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old
-
-        self%work%rest_of_old = 0.0_dp
-        if (.not. self%now%inertial) return
-        if (.not. (abs(self%alpha_f) > 0.0_dp .or. abs(self%alpha_m) > 0.0_dp)) return
-        self%work%rest_of_old = self%alpha_f * (old%spring - system%damping * old%v &
-            - old%friction) - self%alpha_m * system%mass * old%a
-        call system%add_coupling(old%x, self%alpha_f, self%work%rest_of_old)
-    end subroutine weigh_old_state
-
     !> State and force residual at the end of the step for the displacement increments in the
     !> workspace.
     subroutine evaluate(self, system, old, new, report)
@@ -342,7 +333,15 @@ contains
         integer :: i
 
         associate (dx => self%work%dx, residual => self%work%residual)
-            call move_to(self, system, old, dx, new)
+            do i = 1, size(dx)
+                new%x(i) = old%x(i) + dx(i)
+                if (self%now%inertial) then
+                    call motion(self, self%now%dt, dx(i), old%v(i), old%a(i), new%v(i), new%a(i))
+                else
+                    new%v(i) = (dx(i) / self%now%dt - (1.0_dp - self%gamma) * old%v(i)) / self%gamma
+                end if
+                new%spring(i) = system%stiffness * (new%drive - new%x(i))
+            end do
             call friction_forces(system, old%statev, new%normal, dx, self%now%dt, new%statev, &
                 new%friction, self%work%tangent, self%now%friction_status)
             report%status = min(0, self%now%friction_status)
@@ -379,28 +378,6 @@ contains
         a = (moved - dt * old_v) / (self%beta * dt**2) - (0.5_dp / self%beta - 1.0_dp) * old_a
         v = old_v + dt * ((1.0_dp - self%gamma) * old_a + self%gamma * a)
     end subroutine motion
-
-    !> Where the blocks are after a step, and how they move.
-    subroutine move_to(self, system, old, dx, new)
-        class(newmark), intent(in) :: self
-        type(slider), intent(in) :: system
-        type(slider_state), intent(in) :: old
-        real(dp), intent(in), contiguous :: dx(:)   !! [L]
-        type(slider_state), intent(inout) :: new
-        integer :: i
-
-        associate (dt => self%now%dt)
-            do i = 1, size(dx)
-                new%x(i) = old%x(i) + dx(i)
-                if (self%now%inertial) then
-                    call motion(self, dt, dx(i), old%v(i), old%a(i), new%v(i), new%a(i))
-                else
-                    new%v(i) = (dx(i) / dt - (1.0_dp - self%gamma) * old%v(i)) / self%gamma
-                end if
-                new%spring(i) = system%stiffness * (new%drive - new%x(i))
-            end do
-        end associate
-    end subroutine move_to
 
     !> The derivative of the residual, with the opposite sign.
     subroutine fill(self, system)
