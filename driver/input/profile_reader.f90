@@ -154,13 +154,7 @@ contains
         if (read_in%column(trim(axes(2))) == 0) then
             call file%reject(group, key, "its file has no column '" // trim(axes(2)) // "'")
         else if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
-            if (axes(1) == '') then
-                call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
-            else
-                call file%reject(group, key, 'its file must have each node of a grid once: one ' &
-                    // 'row for each ' // trim(axes(2)) // ', or for each pair of an ' &
-                    // trim(axes(1)) // ' and a ' // trim(axes(2)))
-            end if
+            call refuse_nodes()
         end if
         do j = 1, size(names)
             if (read_in%column(trim(names(j))) == 0) call file%reject(group, key, &
@@ -215,14 +209,26 @@ contains
 
             columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
             along = [(read_in%column(trim(axes(j))), j = 1, 2)]
-            allocate (map%values(size(names), size(map%x), size(map%z)))
+            allocate (map%values(size(names), size(map%x), size(map%z)), source=huge(1.0_dp))
             i = 1
             do row = 1, size(read_in%values, 2)
                 if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
                 k = nodes_up_to(map%z, read_in%values(along(2), row))
                 map%values(:, i, k) = read_in%values(columns, row)
             end do
+            sound = all(map%values < huge(1.0_dp))   ! or one stands twice, and another is missing
+            if (.not. sound) call refuse_nodes()
         end subroutine fill_map
+
+        subroutine refuse_nodes()
+            if (axes(1) == '') then
+                call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
+            else
+                call file%reject(group, key, 'its file must have each node of a grid once: one ' &
+                    // 'row for each ' // trim(axes(2)) // ', or for each pair of an ' &
+                    // trim(axes(1)) // ' and a ' // trim(axes(2)))
+            end if
+        end subroutine refuse_nodes
 
     end subroutine read_map
 

@@ -716,8 +716,9 @@ class Input(FaultTest):
         self.assertIn("no column 'b'", self.faults(SMALL.replace('b = 0.015', "b = '@b.csv'")))
         (self.place / 'a.csv').write_text('z,a\n0,0.010\n15e3,-0.010\n')
         self.assertIn('a = -', self.faults(SMALL))
-        (self.place / 'a.csv').write_text('x,z,a\n0,0,0.010\n1e3,15e3,0.010\n')
-        self.assertIn('each node of a grid once', self.faults(SMALL))
+        for rows in ('0,0,0.010\n1e3,15e3,0.010\n', '0,0,0.010\n0,15e3,0.010\n1e3,0,0.010\n1e3,0,0.010\n'):
+            (self.place / 'a.csv').write_text('x,z,a\n' + rows)
+            self.assertIn('each node of a grid once', self.faults(SMALL))
 
     def test_values_out_of_place_are_faults(self):
         self.assertIn('must be from 0 to width', self.faults(SMALL.replace('stations = 0', 'stations = 50e3')))
