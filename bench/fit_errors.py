@@ -86,32 +86,40 @@ def record(kind, draw):
         values = step * np.round(values / step)
     elif name == 'cell':   # a load cell that drifts
         values = values + number * top * time / END
+    elif name == 'zero':   # its zero is a wrong one
+        values = values + number * top
+    elif name == 'struck':   # single samples are wrong
+        values[draw.choice(time.size, int(number), replace=False)] += top * draw.uniform(-1.0, 1.0, int(number))
     return stickslip.Record(time, values, settings), friction
 
 
 KINDS = ('even', 'late@0.02', 'late@0.15', 'late@0.5', 'late@1.5', 'inside@6', 'idle@0.05', 'idle@0.2', 'soft late@0.1', 'soft idle@0.1',
          'kinetic late@0.2', 'uneven', 'lasting@0.9', 'flicker', 'steps@8', 'steps@12', 'cell@0.15', 'short@15.5', 'drift@0.03',
-         'measured@0.03', 'loaded@0.05')
+         'measured@0.03', 'loaded@0.05', 'struck@10', 'zero@0.02', 'stiffness')
 
 
 def main():
     number = int(sys.argv[1]) if len(sys.argv) > 1 else 40
     for kind in sys.argv[2:] or KINDS:
         off, told = [], collections.Counter()
+        settings, true = SETTINGS, TRUE
+        if kind == 'stiffness':   # is one of the unknowns
+            true = {**TRUE, 'slider.stiffness': 1.0}
+            settings = {**SETTINGS, 'free': list(true), 'bounds': {**SETTINGS['bounds'], 'slider.stiffness': (0.7, 1.4)}}
         for seed in range(number):
             measured, friction = record(kind, np.random.default_rng(seed))
             try:
-                fit = stickslip.fit(measured, {**INPUT, 'friction': friction}, **SETTINGS)
+                fit = stickslip.fit(measured, {**INPUT, 'friction': friction}, **settings)
             except ValueError as error:
                 told[f'refused: {str(error)[:100]}'] += 1
                 continue
-            off.append([np.log(fit.values[name] / true) / np.log(np.divide(*fit.intervals[name][::-1])) * 2 * 1.96
-                        for name, true in TRUE.items()])
+            off.append([np.log(fit.values[name] / value) / np.log(np.divide(*fit.intervals[name][::-1])) * 2 * 1.96
+                        for name, value in true.items()])
             told.update(re.sub(r'[-+]?\d[\d.e%+-]*', '#', warning)[:100] for warning in fit.warnings)
         off = np.array(off)
         print(f'{kind:18s}', ', '.join(f'{name} mean {mean:+.2f} rms {rms:.2f}' for name, mean, rms in
-                                       zip(TRUE, off.mean(axis=0), np.sqrt(np.mean(off**2, axis=0)))) if off.size else 'none',
-              f'in their intervals {np.mean(np.abs(off) < 1.96):.0%} of {off.size}', flush=True)
+                                       zip(true, off.mean(axis=0), np.sqrt(np.mean(off**2, axis=0)))) if off.size else 'none',
+              f'in their intervals of 68 % {np.mean(np.abs(off) < 1.0):.0%}, of 95 % {np.mean(np.abs(off) < 1.96):.0%}, of {off.size}', flush=True)
         for words, count in told.most_common():
             print(f'    {count:3d} times: {words}', flush=True)
 

@@ -23,6 +23,8 @@ def numbers(values: Any, what: str) -> np.ndarray:
         return array.astype(np.float64, copy=False)
     except (TypeError, ValueError) as error:
         raise TypeError(f'{what}: numbers are needed ({error})') from None
+    except OverflowError:
+        raise ValueError(f'{what}: holds a number larger than any here') from None
 
 
 def number(value: Any, what: str) -> float:

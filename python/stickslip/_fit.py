@@ -5,6 +5,7 @@ import concurrent.futures
 import dataclasses
 import hashlib
 import numbers
+import os
 import pathlib
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -162,6 +163,9 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     _check_counts(seed=seed, starts=starts, jobs=jobs, **{} if most_evaluations is None else {'most_evaluations': most_evaluations})
     if most_seconds is not None and not (_is_number(most_seconds) and most_seconds > 0.0):
         raise InputError(f'fit: most_seconds = {most_seconds!r}: must be > 0')
+    tell = _progress(progress)
+    if not (checkpoint is None or isinstance(checkpoint, (str, os.PathLike))):
+        raise TypeError(f'fit: checkpoint = {checkpoint!r}: the name of a file is needed')
     base = _namelist.groups_of(input)
     constants = [_constant(name, base, bounds) for name in free]
     if not constants:
@@ -181,7 +185,7 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     journal = Journal(checkpoint, _fingerprint(base, constants, targets, seed, starts))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         problem = Problem(base, constants, targets, _SIMULATE, pool, journal,
-                          Limits(most_evaluations, most_seconds, _progress(progress)))
+                          Limits(most_evaluations, most_seconds, tell))
         try:
             candidate, stopped = search(problem, seed, starts)
             problem.limits.most = problem.limits.seconds = None   # the rest is short, and nothing without it
@@ -212,6 +216,8 @@ _SIMULATE: Simulate = spring_force
 def _progress(wanted: bool | Callable[[str], None] | None) -> Callable[[str], None] | None:
     if callable(wanted):
         return wanted
+    if not (wanted is None or isinstance(wanted, (bool, np.bool_))):
+        raise TypeError(f'fit: progress = {wanted!r}: True, False, None or a function that takes a line is needed')
     if wanted or (wanted is None and sys.stderr.isatty()):
         return lambda text: print(f'fit: {text}', file=sys.stderr, flush=True)
     return None
@@ -252,7 +258,8 @@ def _bounded(name: str, group: str, key: str, bounds: Any, is_factor: bool = Fal
 
 def _listed(given: Any, kind: type) -> list:
     """One or several of a kind as a list; what can be neither is its only element."""
-    return list(given) if isinstance(given, Iterable) and not isinstance(given, kind) else [given]
+    several = isinstance(given, Iterable) and not isinstance(given, kind) and getattr(given, 'ndim', 1) != 0   # an array of no dimension has no items
+    return list(given) if several else [given]
 
 
 def _check_names(free: Sequence[str], bounds: Any) -> None:

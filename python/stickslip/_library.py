@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import operator
 import pathlib
 import sys
 from typing import Any, NamedTuple
@@ -45,8 +46,11 @@ version: str = library.friction_version().decode()
 
 
 def message(status: int) -> str:
-    """What a status of the friction routine says, in one line (docs/user_guide.md, Codes)."""
-    return library.friction_message(int(status)).decode()
+    """What a status of the friction routine says, in one line (docs/user_guide.md, Codes). status: a whole number."""
+    try:
+        return library.friction_message(_int(operator.index(status))).decode()
+    except TypeError:
+        raise TypeError(f'status = {status!r}: a whole number is needed') from None
 
 
 class _LawFacts(ctypes.Structure):

@@ -34,10 +34,9 @@ class Record:
     from_rest: bool | None = None
 
     def __post_init__(self) -> None:
+        self._check_kinds()
         for name in ('time', 'force'):
             object.__setattr__(self, name, _numbers(getattr(self, name), f'{self.name}: {name}'))
-        if not isinstance(self.settings, Mapping):
-            raise TypeError(f'{self.name}: settings: a dict of groups is needed, not {self.settings!r}')
         object.__setattr__(self, 'settings', _namelist.groups_of(self.settings))
         self._check()
 
@@ -66,6 +65,15 @@ class Record:
                 keep &= ~(moment > end)
             moment, pull = moment[keep], pull[keep]
         return cls(moment, pull, settings or {}, name or path.stem, from_rest)
+
+    def _check_kinds(self) -> None:
+        """Refuses what is not of the right kind, beside the numbers."""
+        if not isinstance(self.name, str):
+            raise TypeError(f'name = {self.name!r}: text is needed')
+        if not (self.from_rest is None or isinstance(self.from_rest, (bool, np.bool_))):
+            raise TypeError(f'{self.name}: from_rest = {self.from_rest!r}: True, False or None is needed')
+        if not isinstance(self.settings, Mapping):
+            raise TypeError(f'{self.name}: settings: a dict of groups is needed, not {self.settings!r}')
 
     def refuse(self, why: str) -> None:
         """Raises RecordError."""

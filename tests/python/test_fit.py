@@ -395,6 +395,10 @@ class Fit(unittest.TestCase):
                                     (['mu_0'], 5.0, 'give bounds by name'), ([], 5.0, 'no free'), (['mu_s'], 0.5, 'above 1')):
             with self.assertRaisesRegex(ValueError, words):
                 stickslip.fit(self.record, INPUT, free=free, bounds=bounds)
+        for given, words in (({'progress': 'x'}, "progress = 'x'"), ({'checkpoint': 3}, 'checkpoint = 3: the name of a file'),
+                             ({'free': np.array(5.0)}, 'free = .* names are needed')):
+            with self.assertRaisesRegex(TypeError, words):
+                stickslip.fit(self.record, INPUT, **{**SETTINGS, **given})
 
 
 class Records(unittest.TestCase):
@@ -609,6 +613,9 @@ class Records(unittest.TestCase):
         np.testing.assert_array_equal(record.time, t)
         with self.assertRaisesRegex(TypeError, 'settings: a dict of groups is needed'):
             stickslip.Record(t, force, 'x')
+        for given, words in (({'name': 3}, 'name = 3: text is needed'), ({'from_rest': 'no'}, "from_rest = 'no': True, False or None")):
+            with self.assertRaisesRegex(TypeError, words):   # the one failed after the search, the other counted as yes
+                stickslip.Record(t, force, **given)
 
     def test_uneven_samples_have_the_noise_that_they_have(self):
         """Straight lines between sparse samples have little noise of their own, and cut peaks off."""

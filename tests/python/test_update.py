@@ -145,6 +145,12 @@ class Update(unittest.TestCase):
                               (du.astype('timedelta64[s]'), 'du: numbers are needed, not dates')):
             with self.assertRaisesRegex(TypeError, words):
                 stickslip.update(values, 0.1, law)
+        with self.assertRaisesRegex(ValueError, 'du: holds a number larger'):
+            stickslip.update([10**400, 0.0], 0.1, law)
+        self.assertEqual(stickslip.message(np.int32(-2)), stickslip.message(-2))
+        for status in (None, 'x', 0.5, [1]):
+            with self.assertRaisesRegex(TypeError, 'status = .*: a whole number is needed'):
+                stickslip.message(status)
 
     def test_what_is_no_law_or_fits_nowhere_is_told(self):
         law, one, many = LAWS['coulomb'], np.array([-0.01, 0.1]), motions(3, 2)
