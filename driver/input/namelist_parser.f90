@@ -332,7 +332,8 @@ contains
         type(value_token), allocatable :: tokens(:)
         type(value_token) :: token
         character(len=:), allocatable :: why
-        integer :: n, repeat
+        integer :: n        ! values so far
+        integer :: repeat   ! of the next one
         logical :: after_comma
 
         allocate (tokens(8))
@@ -354,42 +355,111 @@ contains
                     // 'line without it'
                 here%at = here%at + 1
             else
-                call read_token(text, here, token, repeat, broken, why)
+                call read_token()
                 after_comma = .false.
-                call add_tokens(tokens, n, token, repeat, why)
+                call add_tokens()
             end if
             if (len(problem) == 0) problem = why
         end do
         entry%values = tokens(:n)
         if (n == 0 .and. len(problem) == 0) problem = 'has no value'
-    end subroutine read_values
 
-    pure subroutine add_tokens(tokens, n, token, repeat, problem)
-        type(value_token), allocatable, intent(inout) :: tokens(:)
-        integer, intent(inout) :: n
-        type(value_token), intent(in) :: token
-        integer, intent(in) :: repeat
-        character(len=:), allocatable, intent(inout) :: problem
-        type(value_token), allocatable :: more(:)
-        integer :: i
+    contains
 
-        if (n + repeat > most_values) then
-            problem = 'has more than 1000000 values'
-            return
-        end if
-        if (n + repeat > size(tokens)) then
-            allocate (more(2 * (n + repeat)))
-            do i = 1, n
-                call move_alloc(tokens(i)%text, more(i)%text)
-                more(i)%quoted = tokens(i)%quoted
+        !> One value, quoted or not, with its repeat count `r*value`; `repeat` is 0 where there is
+        !> none.
+        subroutine read_token()
+            character(len=:), allocatable :: word
+            integer :: star
+            logical :: ok
+
+            repeat = 1
+            word = word_at(text, here%at)
+            star = index(word, '*')
+            if (star > 1) then
+                if (verify(word(:star - 1), '0123456789') > 0) star = 0
+            end if
+            if (star > 1) then
+                call read_place(word(:star - 1), .false., repeat, ok)
+                if (.not. ok .or. repeat < 1) why = "'" // printable(word) &
+                    // "' repeats a value too often, or not at all"
+                if (len(why) > 0) repeat = 0
+                here%at = here%at + star
+                word = word(star + 1:)
+                if (len(word) == 0 .and. scan(text(here%at:here%at), '''"') == 0) then
+                    why = 'a value is missing after a repeat count'
+                    repeat = 0
+                    token%text = ''
+                    return
+                end if
+            end if
+            token%quoted = scan(text(here%at:here%at), '''"') > 0
+            if (token%quoted) then
+                call read_quoted(token%text)
+            else
+                token%text = word
+                here%at = here%at + len(word)
+            end if
+        end subroutine read_token
+
+        !> Text up to the quote that ends it, which stands twice where it belongs to the text.
+        !> Behind a quote that is missing nothing can be told: `broken`.
+        subroutine read_quoted(inner)
+            character(len=:), allocatable, intent(out) :: inner
+            character(len=1) :: quote
+            integer :: last, length, taken
+
+            quote = text(here%at:here%at)
+            last = line_end(text, here%at)
+            inner = text(here%at:last)
+            taken = 0
+            here%at = here%at + 1
+            do
+                length = index(text(here%at:last), quote) - 1
+                if (length < 0) then
+                    why = 'the text ' // quote // printable(inner(:taken) // text(here%at:last)) &
+                        // ' is not ended by a quote'
+                    broken = .true.
+                    return
+                end if
+                inner(taken + 1:taken + length) = text(here%at:here%at + length - 1)
+                taken = taken + length
+                here%at = here%at + length + 1
+                if (text(here%at:here%at) /= quote) exit
+                taken = taken + 1
+                inner(taken:taken) = quote
+                here%at = here%at + 1
             end do
-            call move_alloc(more, tokens)
-        end if
-        do i = n + 1, n + repeat
-            tokens(i) = token
-        end do
-        n = n + repeat
-    end subroutine add_tokens
+            inner = inner(:taken)
+            if (scan(text(here%at:here%at), blanks // ',/!&$') > 0) return
+            why = 'the text ' // quote // printable(inner) // quote // ' is followed by ' &
+                // printable(text(here%at:last)) // ': a quote or a comma is missing'
+            broken = .true.
+        end subroutine read_quoted
+
+        subroutine add_tokens()
+            type(value_token), allocatable :: more(:)
+            integer :: i
+
+            if (n + repeat > most_values) then
+                why = 'has more than 1000000 values'
+                return
+            end if
+            if (n + repeat > size(tokens)) then
+                allocate (more(2 * (n + repeat)))
+                do i = 1, n
+                    call move_alloc(tokens(i)%text, more(i)%text)
+                    more(i)%quoted = tokens(i)%quoted
+                end do
+                call move_alloc(more, tokens)
+            end if
+            do i = n + 1, n + repeat
+                tokens(i) = token
+            end do
+            n = n + repeat
+        end subroutine add_tokens
+
+    end subroutine read_values
 
     !> Is the word here a key, that is, followed by '=' (perhaps after a subscript)?
     pure function key_follows(text, at) result(follows)
@@ -411,86 +481,6 @@ contains
         end if
         follows = text(i:i) == '='
     end function key_follows
-
-    !> One value, quoted or not, with its repeat count `r*value`; `repeat` is 0 where there is none.
-    subroutine read_token(text, here, token, repeat, broken, problem)
-        character(len=*), intent(in) :: text
-        type(cursor), intent(inout) :: here
-        type(value_token), intent(out) :: token
-        integer, intent(out) :: repeat
-        logical, intent(inout) :: broken
-        character(len=:), allocatable, intent(inout) :: problem
-        character(len=:), allocatable :: word
-        integer :: star
-        logical :: ok
-
-        repeat = 1
-        word = word_at(text, here%at)
-        star = index(word, '*')
-        if (star > 1) then
-            if (verify(word(:star - 1), '0123456789') > 0) star = 0
-        end if
-        if (star > 1) then
-            call read_place(word(:star - 1), .false., repeat, ok)
-            if (.not. ok .or. repeat < 1) problem = "'" // printable(word) &
-                // "' repeats a value too often, or not at all"
-            if (len(problem) > 0) repeat = 0
-            here%at = here%at + star
-            word = word(star + 1:)
-            if (len(word) == 0 .and. scan(text(here%at:here%at), '''"') == 0) then
-                problem = 'a value is missing after a repeat count'
-                repeat = 0
-                token%text = ''
-                return
-            end if
-        end if
-        token%quoted = scan(text(here%at:here%at), '''"') > 0
-        if (token%quoted) then
-            call read_quoted(text, here, token%text, broken, problem)
-        else
-            token%text = word
-            here%at = here%at + len(word)
-        end if
-    end subroutine read_token
-
-    !> Text up to the quote that ends it, which stands twice where it belongs to the text. Behind a
-    !> quote that is missing nothing can be told: `broken`.
-    subroutine read_quoted(text, here, inner, broken, problem)
-        character(len=*), intent(in) :: text
-        type(cursor), intent(inout) :: here
-        character(len=:), allocatable, intent(out) :: inner
-        logical, intent(inout) :: broken
-        character(len=:), allocatable, intent(inout) :: problem
-        character(len=1) :: quote
-        integer :: last, length, n
-
-        quote = text(here%at:here%at)
-        last = line_end(text, here%at)
-        inner = text(here%at:last)
-        n = 0
-        here%at = here%at + 1
-        do
-            length = index(text(here%at:last), quote) - 1
-            if (length < 0) then
-                problem = 'the text ' // quote // printable(inner(:n) // text(here%at:last)) &
-                    // ' is not ended by a quote'
-                broken = .true.
-                return
-            end if
-            inner(n + 1:n + length) = text(here%at:here%at + length - 1)
-            n = n + length
-            here%at = here%at + length + 1
-            if (text(here%at:here%at) /= quote) exit
-            n = n + 1
-            inner(n:n) = quote
-            here%at = here%at + 1
-        end do
-        inner = inner(:n)
-        if (is_blank(text(here%at:here%at)) .or. scan(text(here%at:here%at), ',/!&$') > 0) return
-        problem = 'the text ' // quote // printable(inner) // quote // ' is followed by ' &
-            // printable(text(here%at:last)) // ': a quote or a comma is missing'
-        broken = .true.
-    end subroutine read_quoted
 
     ! ---- characters --------------------------------------------------------------------------
 

@@ -5,10 +5,9 @@ module point_reader
     use column_keys, only : check_factors, read_column_keys, refuse_column_keys, refuse_table
     use csv_table, only : column_request, csv => table, read_table
     use law_input, only : read_friction
-    use loading_path, only : path
+    use loading_path, only : path, point_run
     use namelist_input, only : any_number, at_least, between, namelist_file
     use number_text, only : whole_text
-    use point_settings, only : point_run
     use unit_reader, only : read_units
     implicit none
     private

@@ -2,10 +2,11 @@
 !> displacement or traction moves linearly to a target.
 module loading_path
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use unit_names, only : units
     implicit none
     private
 
-    public :: path
+    public :: path, point_run
 
     type :: path
         integer :: ndir = 3                        !! 2 or 3 directions, the first is normal
@@ -17,6 +18,14 @@ module loading_path
     contains
         procedure :: increments, starting_values
     end type path
+
+    !> What the point mode is told to do.
+    type :: point_run
+        real(dp), allocatable :: props(:)   !! constants of the friction routine
+        type(path) :: loading
+        logical :: tangent = .false.        !! the CSV file shows the tangent
+        type(units) :: units                !! that the numbers are in, for pictures
+    end type point_run
 
 contains
 

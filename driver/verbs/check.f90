@@ -5,12 +5,12 @@ module check
     use fault_settings, only : fault_plan
     use fault_study, only : check_by_engine
     use input_kind, only : fitting, refuse_other_verb, verb_of
+    use loading_path, only : point_run
     use namelist_input, only : namelist_file
     use number_text, only : whole_text
     use platform, only : report
     use profile_reader, only : names_netcdf
     use point_reader, only : read_point_settings
-    use point_settings, only : point_run
     use run_reader, only : read_settings
     use run_settings, only : settings
     use sweep_reader, only : read_sweep

@@ -4,12 +4,12 @@ module point_study
     use command_line, only : command
     use friction_mod, only : friction_message, statev_dissipation, statev_slip
     use law_facts, only : internal_variable
+    use loading_path, only : point_run
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file
     use platform, only : interrupted, report, watch_for_interrupts
     use point_recorder, only : point_csv
     use point_reader, only : read_point_settings
-    use point_settings, only : point_run
     use progress_bar, only : progress
     use result_files, only : of_run, remove_results
     use run_pictures, only : draw_point

@@ -82,8 +82,15 @@ contains
         type(c_ptr), value, intent(in) :: result       !! place of a pointer
         integer(c_int) :: status
         type(run_result), pointer :: this
-        type(caller_watch) :: caller
+        type(caller_watch), target :: caller
         procedure(watch_function), pointer :: watch_
+        type(settings) :: run
+        type(simulation_run) :: live
+        type(observer_slot) :: observers(2)
+        type(outcome) :: ended
+        type(run_warning), allocatable :: warnings(:)
+        real(dp), allocatable :: rows(:, :)
+        integer :: i
 
         status = friction_null_pointer
         call make_result(name, text, result, this)
@@ -93,7 +100,31 @@ contains
             caller%watch => watch_
         end if
         caller%context = context
-        call run_text(fortran_text(name), fortran_text(text), caller, this, status)
+        call read_text(fortran_text(name), fortran_text(text), run, this)
+        status = exit_bad_input
+        if (len(this%faults) > 1) return
+
+        call start_run(run, live)
+        call this%found%prepare(run)
+        caller%t_end = run%t_end
+        observers(1)%it => this%found
+        observers(2)%it => caller
+        call simulate(live, observers, ended)
+        call find_warnings(run, ended, warnings)
+        do i = size(warnings), 1, -1
+            this%warnings = trim(warnings(i)%text) // new_line('a') // this%warnings
+        end do
+        call this%pieces%start(piece_columns)
+        rows = piece_rows(run, ended)
+        do i = 1, size(rows, 2)
+            call this%pieces%add(rows(:, i))
+        end do
+        call this%summary%start(summary_columns)
+        call this%summary%add(summary_row(run, ended))
+        status = exit_done
+        if (len(ended%failure) == 0) return
+        status = exit_failed
+        this%failure = ended%failure // c_null_char
     end function c_run
 
     !> An empty result in the place that a caller has for it; none if a pointer is missing.
@@ -111,47 +142,6 @@ contains
         allocate (this)
         place = c_loc(this)
     end subroutine make_result
-
-    !> Reads, validates, simulates.
-    subroutine run_text(name, text, caller, this, status)
-        character(len=*), intent(in) :: name, text
-        type(caller_watch), target, intent(inout) :: caller
-        type(run_result), target, intent(inout) :: this
-        integer, intent(out) :: status   !! an exit status of the program
-        type(settings) :: run
-        type(simulation_run) :: live
-        type(observer_slot) :: observers(2)
-        type(outcome) :: result
-        type(run_warning), allocatable :: warnings(:)
-        real(dp), allocatable :: rows(:, :)
-        integer :: i
-
-        call read_text(name, text, run, this)
-        status = exit_bad_input
-        if (len(this%faults) > 1) return
-
-        call start_run(run, live)
-        call this%found%prepare(run)
-        caller%t_end = run%t_end
-        observers(1)%it => this%found
-        observers(2)%it => caller
-        call simulate(live, observers, result)
-        call find_warnings(run, result, warnings)
-        do i = size(warnings), 1, -1
-            this%warnings = trim(warnings(i)%text) // new_line('a') // this%warnings
-        end do
-        call this%pieces%start(piece_columns)
-        rows = piece_rows(run, result)
-        do i = 1, size(rows, 2)
-            call this%pieces%add(rows(:, i))
-        end do
-        call this%summary%start(summary_columns)
-        call this%summary%add(summary_row(run, result))
-        status = exit_done
-        if (len(result%failure) == 0) return
-        status = exit_failed
-        this%failure = result%failure // c_null_char
-    end subroutine run_text
 
     !> `stickslip_stability` of include/stickslip_program.h. Of the reasons there is a line a row.
     function c_stability(name, text, result) result(status) bind(C, name='stickslip_stability')

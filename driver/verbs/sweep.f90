@@ -12,11 +12,11 @@ module sweep
     use result_files, only : of_sweep, remove_results
     use run_observer, only : observer, observer_slot, step_news
     use run_outcome, only : outcome
+    use run_pictures, only : draw_sweep
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
     use slider_system, only : slider_state
     use sweep_journal, only : journal, read_rows
-    use sweep_picture, only : draw_sweep
     use sweep_reader, only : read_sweep
     use sweep_settings, only : sweep_plan
     use sweep_table, only : failure_text, late_from, point_text, result_text, table_header
