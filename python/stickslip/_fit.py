@@ -89,7 +89,11 @@ class Fit:
     def predict(self, record: Record) -> dict[str, dict[str, float]]:
         """Compares a record that need not have been fitted with the model: for the medians over the events of period,
         drop, peak and slope of the loading the measured one, its error (standard deviation, block bootstrap), the
-        computed one, and its deviation (relative). The record's `settings` say what differs in the model."""
+        computed one, and its deviation (relative); NaN where the model shows no such events. The record's `settings` say what
+        differs in the model.
+
+        record: with events to compare with, or a RecordError.
+        """
         if not isinstance(record, Record):
             raise TypeError('predict: record: an object of stickslip.Record is needed')
         return compare(self._problem, self._candidate, analyse(record, _sense(_namelist.merge(self.model, record.settings))))

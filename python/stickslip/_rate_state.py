@@ -40,7 +40,7 @@ EARLY_LATE = 3.0      # standard deviations by which a change of the drive may c
 AT_BOUND = 1e-3       # of a constant, relative
 LEAST_PARTS = 45     # of the record, as long as what is left over lasts: with fewer, errors are known badly
 SPIKE = 15.0          # standard deviations of the noise by which a sample stands out
-BESIDE = 10           # samples before and after a change that friction may well jump in
+BESIDE = 10           # samples after a change that friction may well jump in
 AGREE = 3.0           # standard deviations by which two numbers for one thing may differ
 
 
@@ -324,7 +324,7 @@ def _without_spikes(time: np.ndarray, friction: np.ndarray, noise: np.ndarray, c
     around = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(friction, 2, mode='edge'), 5), axis=1)
     spikes = np.abs(friction - around) > SPIKE * noise
     for after in np.searchsorted(time, changes):
-        spikes[max(0, after - BESIDE):after + BESIDE] = False
+        spikes[max(0, after - 2):after + BESIDE] = False   # the change may come a sample earlier
     count = int(np.count_nonzero(spikes))
     if not 0 < count <= max(1, time.size // 50):
         return np.ones_like(spikes), ()
