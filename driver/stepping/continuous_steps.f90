@@ -78,6 +78,7 @@ contains
             eq%open_below = self%largest * vanishing_part(eq%surface%traits%stiff, run%rtol)
             if (eq%surface%traits%memory == 1) eq%open_below = self%largest * max(1.0e-6_dp, &
                 16.0_dp * epsilon(1.0_dp) / run%rtol)   ! R is lost in its round-off
+            call eq%find_least_share(run%rtol)
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure
                 eq%least_pressure = max(eq%least_pressure, eq%open_below)

@@ -5,8 +5,8 @@ module rosenbrock
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_rates, only : chain_equations
     use chain_solver, only : chain_matrix
-    use slider_rates, only : along, controlled, elastic, extension, slider_equations, unknowns, &
-        velocity
+    use slider_rates, only : along, controlled, elastic, extension, ratio, slider_equations, &
+        unknowns, velocity
     implicit none
     private
 
@@ -296,6 +296,9 @@ contains
         integer :: i
 
         steps(:n) = little * max(abs(y(:n)), natural)
+        ! it may be far smaller than 1, and its rate changes with its logarithm
+        if (equations%least_share > 0.0_dp) steps(ratio) = little * max(abs(y(ratio)), &
+            equations%least_share)
         steps(mirrored) = equations%forward * steps(mirrored)
         do i = 1, n
             w = y

@@ -42,6 +42,8 @@ module slider_rates
         real(dp) :: alpha = 0.0_dp       !! tangential stiffness of the contact [F/L^3]
         real(dp) :: damper = 0.0_dp      !! beside that [F T/L^3]; with it, all but a subloading
                                          !! surface slides, if only at a slip rate of zero
+        real(dp) :: least_share = 0.0_dp !! R beside a damper grows as from here at least: its rate
+                                         !! at 0 has no bound, its way from there is short [-]
         logical :: rigid = .false.       !! the contact has no spring
         type(normal_motion) :: across    !! the interface: there the pressure follows from `place`
         real(dp) :: alpha_n = 0.0_dp     !! normal stiffness of the contact [F/L^3]
@@ -64,11 +66,8 @@ module slider_rates
     contains
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
             traction, inputs, pull, slip_tendency, follows_traction, sense_of, follows_share, &
-            runs_away, damped_contact, balance_at, pressed_to
+            runs_away, damped_contact, balance_at, pressed_to, find_least_share, share_rate
     end type slider_equations
-
-    !> R grows no faster than from here: its rate at 0 has no bound, its way from there is short.
-    real(dp), parameter :: least_ratio = 1.0e-12_dp
 
     !> What a contact does to the block. Those that find it fill in what is not zero.
     type :: contact_motion
@@ -399,7 +398,7 @@ contains
         without_slip = self%alpha * contact%velocity + self%damper * acceleration
         load = load_rates(abs(contact%traction), balance%sense * without_slip, self%alpha, &
             pressure, pressure_rate, .false.)
-        if (self%follows_share()) state%r = max(state%r, least_ratio)
+        if (self%follows_share()) state%r = max(state%r, self%least_share)
         changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
         contact%ratio = 0.0_dp
@@ -419,6 +418,36 @@ contains
 
         follows = self%damper > 0.0_dp .and. self%surface%traits%memory == 1
     end function follows_share
+
+    !> Finds `least_share`: the slip to it is a small part of the tolerated error, counted by the
+    !> slip that it takes to mobilise half of the strength.
+    pure subroutine find_least_share(self, rtol)
+        class(slider_equations), intent(inout) :: self
+        real(dp), intent(in) :: rtol
+        integer, parameter :: iterations = 30   !! each halves the distance at least
+        real(dp), parameter :: small = 0.1_dp
+        integer :: i
+
+        self%least_share = 0.0_dp
+        if (.not. self%follows_share()) return
+        self%least_share = rtol
+        do i = 1, iterations
+            self%least_share = sqrt(self%least_share * small * rtol &
+                * self%share_rate(self%least_share) / self%share_rate(0.5_dp))
+        end do
+    end subroutine find_least_share
+
+    !> How fast R grows with slip beside a damper [1/L].
+    pure function share_rate(self, r) result(rate)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: r
+        real(dp) :: rate
+        type(law_state) :: changes
+
+        changes = self%surface%state_rates(law_state(mu=0.0_dp, r=max(r, self%least_share)), &
+            load_rates(0.0_dp, 0.0_dp, self%alpha, 0.0_dp, 0.0_dp, .true.), 1.0_dp)
+        rate = changes%r
+    end function share_rate
 
     !> What a subloading surface carries when it slides fully [F/L^2].
     pure function full_strength(self, y, pressure) result(full)

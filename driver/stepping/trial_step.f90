@@ -3,7 +3,8 @@
 module trial_step
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
-    use slider_rates, only : damped, dissipated, elastic, extension, slip, unknowns, velocity
+    use slider_rates, only : damped, dissipated, elastic, extension, phase_slide, ratio, slip, &
+        unknowns, velocity
     implicit none
     private
 
@@ -34,7 +35,24 @@ contains
         if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
         if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, &
             weight, tried)
+        if (block%equations%follows_share()) call mobilise(block, tried)
     end subroutine look_at
+
+    !> R of a surface beside a damper follows the traction so closely, while it is small, that the
+    !> estimate of the error does not see how much slip that takes: the step may change its rate
+    !> by so much only.
+    pure subroutine mobilise(block, tried)
+        type(moving_block), intent(in) :: block
+        type(trial), intent(inout) :: tried
+        real(dp), parameter :: most = 4.0_dp, small = 0.5_dp
+        real(dp) :: fall
+
+        associate (eq => block%equations, after => tried%y(ratio))
+            if (eq%phase /= phase_slide .or. after > small) return
+            fall = eq%share_rate(block%y(ratio)) / eq%share_rate(after)
+            tried%error = max(tried%error, (fall / most)**4)
+        end associate
+    end subroutine mobilise
 
     !> The traction of a rigid contact that creeps comes to balance the faster the slower it slips.
     !> Where neither inertia nor damper has a say, it is the balance's. Else, unless it is that

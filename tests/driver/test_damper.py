@@ -17,6 +17,8 @@ SLIDING = {   # friction beside the springs, and whether the block has a mass
     'linker_dieterich': "law='linker_dieterich', a=0.01, b=0.015, d_c=0.01, v0=1, f0=0.4, alpha=0.2",
     'static_kinetic': "law='static_kinetic', mu_s=0.4, mu_k=0.2, d_c=0.02",
     'subloading': "law='subloading', mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=1000",
+    'subloading, cotangent': "law='subloading', mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=100, u_of_r='cotangent'",
+    'subloading, reciprocal': "law='subloading', mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=100, u_of_r='reciprocal'",
     'subloading, cap, cohesion': "law='subloading', mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=1000, tau_max=3.2, cohesion=0.3",
 }
 
