@@ -80,8 +80,9 @@ contains
                 16.0_dp * epsilon(1.0_dp) / run%rtol)   ! R is lost in its round-off
             call eq%find_least_share(run%rtol)
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
-                ! closed without pressure
-                eq%least_pressure = max(eq%least_pressure, eq%open_below)
+                ! closed without pressure; slip that goes with an exponential needs some
+                if (eq%surface%traits%stiff) eq%least_pressure = max(eq%least_pressure, &
+                    eq%open_below)
                 eq%eased = eq%surface%traits%stiff
                 eq%open_below = -tiny(self%largest)
             end if

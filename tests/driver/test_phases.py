@@ -41,6 +41,15 @@ class Phases(Program):
             &time t_end=1, rtol=1e-7 /""")
         self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])
 
+    def test_cohesion_alone_holds_a_subloading_surface_without_pressure(self):
+        # as much of the pressure as would lose R in round-off was left, the more the smaller rtol
+        for rtol in ('1e-7', '1e-11'):
+            rows, _ = self.table(f"""&friction law='subloading', alpha_n=1000, alpha_t=100, mu_s=0.4, mu_k=0.2, kappa=1, xi=1, m=50, cohesion=2 /
+                &slider mass=0.01, stiffness=1, damping=0.2 /
+                &drive velocity=1, duration=10, 10, normal=10, 0 /
+                &time t_end=20, rtol={rtol} /""")
+            self.assertAlmostEqual(rows[-1]['friction_force'], 2, delta=1e-6)
+
     def test_what_a_contact_spring_holds_when_it_opens_counts_as_lost(self):
         for steps, part in (('rtol=1e-8', 1e-6), ('dt=1e-4', 1e-2)):   # the damper's work, first order in dt
             rows, energies = self.table(f"""&friction law='coulomb', mu=0.5, alpha_n=1000, alpha_t=100 /
