@@ -203,14 +203,16 @@ contains
         end do
     end subroutine find_exponents
 
-    !> The slip if the state does not evolve by slip and the spring does not unload.
+    !> The slip if the state does not evolve by slip, to a few per cent. That at which the spring
+    !> unloads, too, is less by a factor of e^w, w e^w = k slip with k = stiffness/(a pressure):
+    !> Lambert's function, as approximated by Iacono and Boyd (Adv. Comput. Math. 43, 2017).
     pure subroutine start(constants, block, state, now)
         real(wp), intent(in) :: constants(lanes, n_constants)
         type(slide_block), intent(in) :: block
         type(evolution), intent(in) :: state
         type(search), intent(inout) :: now
-        real(wp), parameter :: fast = 1.0e6_wp
-        real(wp), dimension(lanes) :: y, e_y, ln_part, ln_theta
+        real(wp), parameter :: fast = 1.0e6_wp, most = 300.0_wp
+        real(wp), dimension(lanes) :: y, e_y, ln_part, ln_theta, ln_x, ln_more
         integer :: i
 
         do i = 1, block%n
@@ -231,6 +233,13 @@ contains
         do i = 1, block%n
             now%at%z(i) = y(i) + ln_part(i) - ln_2 - now%u_0(i) - state%b_over_a(i) &
                 * (now%w_0(i) + ln_theta(i))
+            ln_x(i) = log(1.0_wp + y(i) * exp(min(now%at%z(i) - state%ln_most(i), most)))
+        end do
+        do i = 1, block%n
+            ln_more(i) = log(1.0_wp + ln_x(i))
+        end do
+        do i = 1, block%n
+            now%at%z(i) = now%at%z(i) - ln_x(i) * (1.0_wp - ln_more(i) / (2.0_wp + ln_x(i)))
             now%at%z(i) = max(min(now%at%z(i), now%high(i)), now%low(i))
         end do
     end subroutine start
