@@ -10,7 +10,7 @@ module slip_observer
     use run_outcome, only : event_totals
     use run_settings, only : settings
     use slider_system, only : slider_state
-    use slip_events, only : event_finder, moment, slip_event
+    use slip_events, only : event_finder, moment, slip_event, turning_point
     use step_sums, only : block_sums
     implicit none
     private
@@ -75,27 +75,31 @@ contains
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(step_news), intent(inout) :: news
+        type(moment) :: before, now
         integer :: i, k
 
         i = self%drive%piece(old%time + round_off * (new%time - old%time))
-        call self%finder%follow(seen(self, old, news%sums, 1, i), seen(self, new, news%sums, 2, &
-            i), news%last, news%slip_events)
+        before = seen(self, old, news%sums, 1, i)
+        now = seen(self, new, news%sums, 2, i)
+        call self%finder%follow(before, now, news%last, news%slip_events)
         do k = 1, size(news%slip_events)
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))
             self%onsets = [self%onsets, news%slip_events(k)%onset]
         end do
         self%peak_velocity = max(self%peak_velocity, news%sums%fastest)
-        if (self%drive%listed > 1) call self%measure(old, new)
+        if (self%drive%listed > 1) call self%measure(old, new, before, now)
     end subroutine see
 
     !> A step belongs to the piece that it ends in, or that ends with it. The first one of a piece
     !> gives it its start, too; but what friction is after a sudden load is seen at the step's end.
-    pure subroutine measure(self, old, new)
+    pure subroutine measure(self, old, new, before, now)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
-        real(dp) :: aside
+        type(moment), intent(in) :: before, now   !! the same two
+        real(dp) :: aside, between
         integer :: i
+        logical :: turns
 
         if (new%normal <= 0.0_dp) return
         aside = round_off * (new%time - old%time)
@@ -104,17 +108,46 @@ contains
             self%drive%start(i) - aside) then
             if (is_gradual(self%drive, i)) call self%friction(i)%take(over_load(old))
         end if
+        call find_turn(between, turns)
+        if (turns) call self%friction(i)%take(between)
         call self%friction(i)%take(over_load(new))
 
     contains
 
+        !> Where the drive spring turns within the step, friction does, unless inertia or a damper
+        !> has a say in it.
+        pure subroutine find_turn(friction, found)
+            real(dp), intent(out) :: friction   !! there [-]
+            logical, intent(out) :: found
+            real(dp), parameter :: no_say = 0.5_dp   !! part of what the turn has beyond the ends
+            type(moment) :: turn
+            real(dp) :: rest(2)   ! of the spring's force [F]
+
+            friction = 0.0_dp
+            call turning_point(before, now, turn, found)
+            found = found .and. .not. abs(new%normal - old%normal) > 0.0_dp
+            if (.not. found) return
+            rest = [before%force - mean_of(old), now%force - mean_of(new)]
+            found = abs(rest(2) - rest(1)) <= no_say * min(abs(turn%force - before%force), &
+                abs(turn%force - now%force))
+            friction = self%sense(i) * (turn%force - rest(1) - (rest(2) - rest(1)) * (turn%time &
+                - old%time) / (new%time - old%time)) / (self%area * new%normal)
+        end subroutine find_turn
+
         pure function over_load(state) result(friction)
             type(slider_state), intent(in) :: state
-            real(dp) :: friction   !! mean over the blocks [-]
+            real(dp) :: friction   !! [-]
 
-            friction = sum(state%friction) / (size(state%friction) * self%area * state%normal)
+            friction = mean_of(state) / (self%area * state%normal)
             if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
         end function over_load
+
+        pure function mean_of(state) result(friction)
+            type(slider_state), intent(in) :: state
+            real(dp) :: friction   !! mean over the blocks [F]
+
+            friction = sum(state%friction) / size(state%friction)
+        end function mean_of
 
     end subroutine measure
 

@@ -212,12 +212,12 @@ class Events(EventsOfRuns):
 class Pieces(Program):
     A, B, D_C, STIFFNESS, SPRINGS = 0.01, 0.014, 10.0, 0.05, 10.0
 
-    def pieces(self, drive, t_end, stiffness=STIFFNESS, sign=1, step='dt=0.05'):
+    def pieces(self, drive, t_end, stiffness=STIFFNESS, sign=1, step='dt=0.05', damping=2e-5):
         """The table of the pieces; friction is 0.75 in steady sliding at 1, on a spring of the stiffness given."""
         velocities = ', '.join(str(sign * v) for v, _ in drive)
         durations = ', '.join(str(t) for _, t in drive)
         text = (f"&friction law='rate_and_state' alpha_n=1.0 alpha_t={self.SPRINGS} a={self.A} b={self.B} d_c={self.D_C} v0=1. "
-                f"f0=0.75 theta_0={self.D_C} / &slider mass=0.0 stiffness={stiffness} damping=2.0e-5 normal_traction=1.0 / "
+                f"f0=0.75 theta_0={self.D_C} / &slider mass=0.0 stiffness={stiffness} damping={damping} normal_traction=1.0 / "
                 f'&drive velocity={velocities}, duration={durations} / &initial mu={sign * 0.75} / &time t_end={t_end}, {step} /')
         result = self.run_text(text.replace(f'mu={-0.75}', 'mu=0'), '--no-plot')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
@@ -264,6 +264,14 @@ class Pieces(Program):
             self.assertTrue(math.isnan(row['healing']))
         self.assertEqual(up['direct_effect'], up['peak_friction'] - table[0]['last_friction'])
         self.assertEqual(down['direct_effect'], down['least_friction'] - up['last_friction'])
+
+    def test_peaks_lie_within_long_steps(self):
+        drive = [(1, 1), (10, 20), (1, 20)]
+        expected = self.friction_by_runge_kutta(drive, self.STIFFNESS, step=1e-3)
+        for rtol, delta in (('1e-3', 2e-4), ('1e-4', 1.5e-5), ('1e-5', 3e-6)):   # ends of steps are 5e-5 and 2e-5 off at the last two
+            up, down = self.pieces(drive, 41, step=f'rtol={rtol}', damping=0)[1:]
+            self.assertAlmostEqual(up['peak_friction'], expected[1][0], delta=delta)
+            self.assertAlmostEqual(down['least_friction'], expected[2][1], delta=delta)
 
     def test_a_stiff_spring_shows_the_constants_of_the_law(self):
         up = self.pieces([(1, 1), (10, 20)], 21, stiffness=10, step='dt=1e-3')[1]
