@@ -79,6 +79,7 @@ EXCEPTIONS = {
     ('src/adapters/friction_layer.f90', 'perturb_layer'): ADAPTER,
     ('tests/unit/test_laws_abaqus_explicit.pf', 'compare_vfric'): ADAPTER,
     ('driver/model/contact_forces.f90', 'friction_forces'): WORK,
+    ('driver/model/contact_forces.f90', 'forces_on_part'): WORK,
     ('driver/stepping/explicit_pairs.f90', 'explicit_step'): WORK,
     ('driver/stepping/rosenbrock.f90', 'rosenbrock_step'): WORK,
     ('driver/stepping/rosenbrock.f90', 'differentiate'): WORK,

@@ -33,129 +33,55 @@ contains
         type(run_warning), allocatable, intent(out) :: warnings(:)
 
         allocate (warnings(0))
-        call look_at_energy()
+        call look_at_energy(run, result, warnings)
         if (run%mass > 0.0_dp) then
-            if (.not. run%adaptive) call look_at_step()
-            call look_at_contact()
+            if (.not. run%adaptive) call look_at_step(run, result, warnings)
+            call look_at_contact(run, result, warnings)
         end if
-        call look_at_file()
-        call look_at_opening()
-
-    contains
-
-        !> What comes in must be somewhere: the rest is the error of the integration in time.
-        subroutine look_at_energy()
-            real(dp), parameter :: allowed = 0.02_dp   !! part of what has passed through the system
-            type(law_facts) :: law
-            character(len=240) :: text
-            real(dp) :: passed
-
-            associate (e => result%energy)
-                passed = max(e%most_work, abs(e%at_start), e%dissipated + e%damped)
-                if (abs(e%unbalanced()) <= allowed * passed) return
-                write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
-                    100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
-            end associate
-            law = friction_facts(run%props)
-            if (run%adaptive .and. run%across%free() .and. run%newmark .and. law%traits%onset &
-                == onset_drops) then
-                ! those come to ones in which the contact sticks and slips many times
-                text = trim(text) // ' adaptive steps (rtol) without beta, gamma and rho_infinity, &
-                    &for friction that drops at once'
-            else if (run%adaptive) then
-                text = trim(text) // ' a smaller rtol'
-            else
-                text = trim(text) // ' shorter steps (dt), or steps by their error (rtol)'
-            end if
-            if (run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp .or. run%mass > 0.0_dp &
-                .and. run%gamma > 0.5_dp .and. .not. run%adaptive) text = trim(text) &
-                // '; what rho_infinity or gamma damps counts as open'
-            warnings = [warnings, run_warning('energy_balance', text)]
-        end subroutine look_at_energy
-
-        subroutine look_at_step()
-            character(len=240) :: text
-
-            if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
-            if (result%unresolved > 0) then
-                write (text, '(a, es9.2, a, i0, a)') 'the step dt =', run%dt, ' is too long for ', &
-                    result%unresolved, ' slips of blocks, which begin and end within it: they are &
-                    &not listed as events'
-                warnings = [warnings, run_warning('long_step', text)]
-                return
-            end if
-            if (run%dt <= longest_step(run, friction_facts(run%props))) return
-            write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
-                &events, which last about pi sqrt(mass/stiffness) =', event_duration(run), &
-                ': take thirty steps or more to an event'
-            warnings = [warnings, run_warning('long_step', text)]
-        end subroutine look_at_step
-
-        !> Where friction falls with the slip rate in less time than the contact spring takes to
-        !> swing, or in less than a step unloads it, it drops at once as slip begins. What follows
-        !> depends on the contact spring, unless its ringing has died away by the time in which the
-        !> drive makes up for the drop. Fixed steps in which a block that slides moves less than the
-        !> drop takes of the contact spring stick in between: friction is then on the way from
-        !> `mu_k` to `mu_s` again and again, however much is damped. Newmark's adaptive steps become
-        !> as short as that.
-        subroutine look_at_contact()
-            real(dp), parameter :: slow = 20.0_dp, slower = 50.0_dp   !! falls, of a swing [rad]
-            real(dp), parameter :: even = 0.5_dp   !! fall in a step that is one without a jump
-            real(dp), parameter :: far = 4.0_dp
-            type(law_facts) :: law
-            type(drop_of_friction) :: drop
-            real(dp) :: by_step   ! how much the contact spring loads at a unit of velocity [F T/L]
-            logical :: slides_on, jumps
-
-            law = friction_facts(run%props)
-            drop = find_drop(run, law)
-            if (drop%slope <= run%area * law%damping .or. result%energy%dissipated <= 0.0_dp &
-                .or. run%rigid_contact) return
-            by_step = run%area * law%alpha_t * run%dt
-            if (run%adaptive) then
-                if (run%mass * drop%swing >= merge(slow, slower, result%in_rates) &
-                    * drop%slope) return
-                if (dies_away(run, law, drop) .and. result%in_rates) return
-            else
-                jumps = drop%slope > even * by_step
-                if (run%mass * drop%swing >= slow * drop%slope .and. .not. jumps) return
-                slides_on = by_step * drop%velocity >= far * drop%force .or. .not. jumps
-                if (slides_on .and. dies_away(run, law, drop)) return
-            end if
-            warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when &
-                &slip begins, and the contact spring (alpha_t) rings undamped or sticks in &
-                &between: periods, stress drops and friction depend on it. Take ' &
-                // remedies(run, law, drop))]
-        end subroutine look_at_contact
-
-        subroutine look_at_file()
-            real(dp), parameter :: round_off = 1.0e-9_dp
-            character(len=240) :: text
-
-            if (result%time * (1.0_dp - round_off) <= run%drive%measured_until) return
-            write (text, '(a, es12.5, a, es12.5, a)') 'the file of the drive ends at time ', &
-                run%drive%measured_until, ', before t_end = ', run%t_end, ': its last velocity and &
-                &normal traction went on'
-            warnings = [warnings, run_warning('short_file', text)]
-        end subroutine look_at_file
-
-        !> A state that grows as the normal traction vanishes would leave the range of numbers: the
-        !> contact opens before (`within_range`). Continuous time has another state.
-        subroutine look_at_opening()
-            real(dp), parameter :: most = 17.0_dp   !! open below 8e-6 of the largest load
-            character(len=240) :: text
-            real(dp) :: effect
-
-            if (result%in_rates .or. .not. run%load_vanishes()) return
-            effect = pressure_effect(run%props, run%chain%constants)
-            if (effect <= most) return
-            write (text, '(a, f0.1, a)') 'the state grows so fast as the normal traction vanishes &
-                &(alpha is ', effect, ' times b) that the contact counts as open before: what &
-                &would slip there is missing. One block with adaptive steps has none of that'
-            warnings = [warnings, run_warning('early_opening', text)]
-        end subroutine look_at_opening
-
+        call look_at_file(run, result, warnings)
+        call look_at_opening(run, result, warnings)
     end subroutine find_warnings
+
+    !> What comes in must be somewhere: the rest is the error of the integration in time.
+    subroutine look_at_energy(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: allowed = 0.02_dp   !! part of what has passed through the system
+        type(law_facts) :: law
+        character(len=240) :: text
+        real(dp) :: passed
+
+        associate (e => result%energy)
+            passed = max(e%most_work, abs(e%at_start), e%dissipated + e%damped)
+            if (abs(e%unbalanced()) <= allowed * passed) return
+            write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
+                100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
+        end associate
+        law = friction_facts(run%props)
+        if (run%adaptive .and. run%across%free() .and. run%newmark .and. law%traits%onset &
+            == onset_drops) then
+            ! those come to ones in which the contact sticks and slips many times
+            text = trim(text) // ' adaptive steps (rtol) without beta, gamma and rho_infinity, for &
+                &friction that drops at once'
+        else if (run%adaptive) then
+            text = trim(text) // ' a smaller rtol'
+        else
+            text = trim(text) // ' shorter steps (dt), or steps by their error (rtol)'
+        end if
+        if (damps_steps(run)) text = trim(text) // '; what rho_infinity or gamma damps counts as &
+            &open'
+        warnings = [warnings, run_warning('energy_balance', text)]
+    end subroutine look_at_energy
+
+    !> Does the method of the steps damp oscillations?
+    pure function damps_steps(run) result(damps)
+        type(settings), intent(in) :: run
+        logical :: damps
+
+        damps = run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp .or. run%mass > 0.0_dp &
+            .and. run%gamma > 0.5_dp .and. .not. run%adaptive
+    end function damps_steps
 
     !> How long a slip event lasts, about [T].
     pure function event_duration(run) result(lasts)
@@ -175,6 +101,64 @@ contains
 
         dt = merge(0.05_dp, 0.2_dp, law%rate_weakening > 0.0_dp) * event_duration(run)
     end function longest_step
+
+    subroutine look_at_step(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        character(len=240) :: text
+
+        if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
+        if (result%unresolved > 0) then
+            write (text, '(a, es9.2, a, i0, a)') 'the step dt =', run%dt, ' is too long for ', &
+                result%unresolved, ' slips of blocks, which begin and end within it: they are not &
+                &listed as events'
+            warnings = [warnings, run_warning('long_step', text)]
+            return
+        end if
+        if (run%dt <= longest_step(run, friction_facts(run%props))) return
+        write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
+            &events, which last about pi sqrt(mass/stiffness) =', event_duration(run), &
+            ': take thirty steps or more to an event'
+        warnings = [warnings, run_warning('long_step', text)]
+    end subroutine look_at_step
+
+    !> Where friction falls with the slip rate in less time than the contact spring takes to swing,
+    !> or in less than a step unloads it, it drops at once as slip begins. What follows depends on
+    !> the contact spring, unless its ringing has died away by the time in which the drive makes up
+    !> for the drop. Fixed steps in which a block that slides moves less than the drop takes of the
+    !> contact spring stick in between: friction is then on the way from `mu_k` to `mu_s` again and
+    !> again, however much is damped. Newmark's adaptive steps become as short as that.
+    subroutine look_at_contact(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: slow = 20.0_dp, slower = 50.0_dp   !! falls, of a swing [rad]
+        real(dp), parameter :: even = 0.5_dp   !! fall in a step that is still one without a jump
+        real(dp), parameter :: far = 4.0_dp
+        type(law_facts) :: law
+        type(drop_of_friction) :: drop
+        real(dp) :: by_step   ! how much the contact spring loads at a unit of velocity [F T/L]
+        logical :: slides_on, jumps
+
+        law = friction_facts(run%props)
+        drop = find_drop(run, law)
+        if (drop%slope <= run%area * law%damping .or. result%energy%dissipated <= 0.0_dp &
+            .or. run%rigid_contact) return
+        by_step = run%area * law%alpha_t * run%dt
+        if (run%adaptive) then
+            if (run%mass * drop%swing >= merge(slow, slower, result%in_rates) * drop%slope) return
+            if (dies_away(run, law, drop) .and. result%in_rates) return
+        else
+            jumps = drop%slope > even * by_step
+            if (run%mass * drop%swing >= slow * drop%slope .and. .not. jumps) return
+            slides_on = by_step * drop%velocity >= far * drop%force .or. .not. jumps
+            if (slides_on .and. dies_away(run, law, drop)) return
+        end if
+        warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
+            &begins, and the contact spring (alpha_t) rings undamped or sticks in between: &
+            &periods, stress drops and friction depend on it. Take ' // remedies(run, law, drop))]
+    end subroutine look_at_contact
 
     function find_drop(run, law) result(drop)
         type(settings), intent(in) :: run
@@ -248,5 +232,38 @@ contains
         text = text // 'eta_t above ' // trim(adjustl(number))
         if (run%chain%n_blocks > 1 .and. run%adaptive) text = text // ' in fixed steps'
     end function remedies
+
+    subroutine look_at_file(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: round_off = 1.0e-9_dp
+        character(len=240) :: text
+
+        if (result%time * (1.0_dp - round_off) <= run%drive%measured_until) return
+        write (text, '(a, es12.5, a, es12.5, a)') 'the file of the drive ends at time ', &
+            run%drive%measured_until, ', before t_end = ', run%t_end, ': its last velocity and &
+            &normal traction went on'
+        warnings = [warnings, run_warning('short_file', text)]
+    end subroutine look_at_file
+
+    !> A state that grows as the normal traction vanishes would leave the range of numbers: the
+    !> contact opens before (`within_range`). Continuous time has another state.
+    subroutine look_at_opening(run, result, warnings)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(run_warning), allocatable, intent(inout) :: warnings(:)
+        real(dp), parameter :: most = 17.0_dp   !! open below 8e-6 of the largest normal traction
+        character(len=240) :: text
+        real(dp) :: effect
+
+        if (result%in_rates .or. .not. run%load_vanishes()) return
+        effect = pressure_effect(run%props, run%chain%constants)
+        if (effect <= most) return
+        write (text, '(a, f0.1, a)') 'the state grows so fast as the normal traction vanishes &
+            &(alpha is ', effect, ' times b) that the contact counts as open before: what would &
+            &slip there is missing. One block with adaptive steps has none of that'
+        warnings = [warnings, run_warning('early_opening', text)]
+    end subroutine look_at_opening
 
 end module run_warnings

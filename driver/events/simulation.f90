@@ -3,16 +3,14 @@
 module simulation
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use abstract_integrator, only : integrator, step_report
-    use adaptive_steps, only : adaptive
     use archive_file, only : archive
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, load_factors
-    use continuous_chain, only : chain_in_continuous_time, continuous_blocks
-    use continuous_steps, only : continuous
     use energies, only : energy_balance, take_stock
-    use fixed_steps, only : fixed
-    use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, statev_u_et
+    use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
+        statev_u_et
     use initial_states, only : displace, initial_state, place
+    use integrator_choice, only : choose_integrator
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
@@ -70,16 +68,7 @@ contains
         if (run%chain%displacement_scatter > 0.0_dp) call displace(system, displaced(run%chain), &
             live%state)
         if (run%rigid_contact) live%state%statev(:, statev_u_et) = 0.0_dp
-        if (run%adaptive .and. .not. run%newmark .and. run%one_by_itself()) then
-            allocate (continuous :: live%steps)
-        else if (run%adaptive .and. chain_in_continuous_time(run)) then
-            allocate (continuous_blocks :: live%steps)
-        else if (run%adaptive) then
-            allocate (adaptive :: live%steps)
-        else
-            allocate (fixed :: live%steps)
-        end if
-        call live%steps%prepare(run, system, live%state)
+        call choose_integrator(run, system, live%state, live%steps)
         call take_stock(system, live%state, energy)
         live%energy_at_start = energy%held()
     end subroutine start_run
@@ -93,23 +82,17 @@ contains
         type(step_news) :: news
         type(step_report) :: report
         character(len=:), allocatable :: why
-        integer :: i
 
         call news%clear()
         live%other = live%state
-        if (.not. live%resumed) then
-            do i = 1, size(observers)
-                call observers(i)%it%begin(live%state, news)
-            end do
-            call end_run(news%problem)
-        end if
+        if (.not. live%resumed) call begin_all(live, observers, news)
         call live%state%use_large_pages()
         call live%other%use_large_pages()
         do while (len(live%problem) == 0 .and. .not. live%steps%finished(live%state))
             call live%steps%step(live%state, live%other, report)
             if (report%status < 0) then
                 call live%steps%why_stopped(report%status, why)
-                call end_run(why)
+                call tell_when(live, why)
                 exit
             end if
             if (report%status == friction_snap_back) live%snap_backs = live%snap_backs + 1
@@ -120,66 +103,92 @@ contains
             live%most_work = max(live%most_work, abs(live%other%drive_work))
             call swap_states(live%state, live%other)
             news%complete = report%complete
-            call show_all()
-            call end_run(news%problem)
+            call show_all(live, observers, news)
+            if (len(news%problem) > 0) call tell_when(live, news%problem)
         end do
+        call finish_all(live, observers, news)
+        call sum_up(live, result)
+        result%interrupted = news%interrupted
+    end subroutine simulate
+
+    subroutine begin_all(live, observers, news)
+        type(simulation_run), intent(inout) :: live
+        type(observer_slot), intent(inout) :: observers(:)
+        type(step_news), intent(inout) :: news
+        integer :: i
+
+        do i = 1, size(observers)
+            call observers(i)%it%begin(live%state, news)
+        end do
+        if (len(news%problem) > 0 .and. len(live%problem) == 0) call tell_when(live, news%problem)
+    end subroutine begin_all
+
+    subroutine show_all(live, observers, news)
+        type(simulation_run), intent(inout) :: live
+        type(observer_slot), intent(inout) :: observers(:)
+        type(step_news), intent(inout) :: news
+        integer :: i
+
+        call news%clear()
+        news%steps = live%taken
+        news%last = live%steps%finished(live%state)
+        call live%slip_events%see(live%other, live%state, news)
+        call live%chain_events%see(live%other, live%state, news)
+        do i = 1, size(observers)
+            call observers(i)%it%see(live%other, live%state, news)
+        end do
+    end subroutine show_all
+
+    subroutine finish_all(live, observers, news)
+        type(simulation_run), intent(inout) :: live
+        type(observer_slot), intent(inout) :: observers(:)
+        type(step_news), intent(inout) :: news
+        integer :: i
+
         call news%clear()
         call live%chain_events%finish(live%state, news)
         do i = 1, size(observers)
             call observers(i)%it%finish(live%state, news)
         end do
-        call end_run(news%problem)
-        call sum_up()
+        if (len(news%problem) > 0 .and. len(live%problem) == 0) call tell_when(live, news%problem)
+    end subroutine finish_all
 
-    contains
+    !> Says when the run has come to its end.
+    subroutine tell_when(live, why)
+        type(simulation_run), intent(inout) :: live
+        character(len=*), intent(in) :: why
+        character(len=80) :: when
 
-        subroutine show_all()
-            call news%clear()
-            news%steps = live%taken
-            news%last = live%steps%finished(live%state)
-            call live%slip_events%see(live%other, live%state, news)
-            call live%chain_events%see(live%other, live%state, news)
-            do i = 1, size(observers)
-                call observers(i)%it%see(live%other, live%state, news)
-            end do
-        end subroutine show_all
+        write (when, '(a, es13.6, a, i0, a)') 'at time ', max(live%state%time, live%other%time), &
+            ', step ', live%taken + 1, ': '
+        live%problem = trim(when) // ' ' // why
+    end subroutine tell_when
 
-        !> Ends the run with a reason, if there is one, and says when; the first one counts.
-        subroutine end_run(why)
-            character(len=*), intent(in) :: why
-            character(len=80) :: when
+    subroutine sum_up(live, result)
+        type(simulation_run), intent(in) :: live
+        type(outcome), intent(inout) :: result
 
-            if (len(why) == 0 .or. len(live%problem) > 0) return
-            write (when, '(a, es13.6, a, i0, a)') 'at time ', max(live%state%time, &
-                live%other%time), ', step ', live%taken + 1, ': '
-            live%problem = trim(when) // ' ' // why
-        end subroutine end_run
-
-        subroutine sum_up()
-            result%failure = live%problem
-            result%interrupted = news%interrupted
-            result%time = live%state%time
-            result%steps = live%taken
-            result%snap_backs = live%snap_backs
-            result%iterations = live%steps%iterations
-            result%most_iterations = live%steps%most_iterations
-            result%in_rates = live%steps%in_rates
-            result%rejected = live%steps%rejected
-            result%onsets = live%slip_events%onsets
-            result%pieces = live%slip_events%pieces
-            result%friction = live%slip_events%friction
-            result%peak_velocity = live%slip_events%peak_velocity
-            result%chain_events = live%chain_events%ended
-            result%largest_moment = live%chain_events%largest_moment
-            result%cut_events = live%chain_events%cut_short
-            result%unresolved = live%chain_events%finder%unresolved
-            call take_stock(live%steps%system, live%state, result%energy)
-            result%energy%at_start = live%energy_at_start
-            result%energy%dissipated = result%energy%dissipated + live%let_go
-            result%energy%most_work = live%most_work
-        end subroutine sum_up
-
-    end subroutine simulate
+        result%failure = live%problem
+        result%time = live%state%time
+        result%steps = live%taken
+        result%snap_backs = live%snap_backs
+        result%iterations = live%steps%iterations
+        result%most_iterations = live%steps%most_iterations
+        result%in_rates = live%steps%in_rates
+        result%rejected = live%steps%rejected
+        result%onsets = live%slip_events%onsets
+        result%pieces = live%slip_events%pieces
+        result%friction = live%slip_events%friction
+        result%peak_velocity = live%slip_events%peak_velocity
+        result%chain_events = live%chain_events%ended
+        result%largest_moment = live%chain_events%largest_moment
+        result%cut_events = live%chain_events%cut_short
+        result%unresolved = live%chain_events%finder%unresolved
+        call take_stock(live%steps%system, live%state, result%energy)
+        result%energy%at_start = live%energy_at_start
+        result%energy%dissipated = result%energy%dissipated + live%let_go
+        result%energy%most_work = live%most_work
+    end subroutine sum_up
 
     !> Reads or writes what has to be kept to go on; to read, the run must have been started.
     subroutine visit(self, file)

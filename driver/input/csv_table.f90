@@ -114,9 +114,7 @@ contains
         type(table), intent(inout) :: read_in
         type(file_form) :: form
         type(line_cells) :: cells
-        integer :: first, last, line   ! of the file
-        integer :: rows                ! taken so far
-        integer :: i
+        integer :: first, last, line, rows, i
 
         allocate (read_in%names(0), read_in%values(0, 0), read_in%lines(0), read_in%faults(0))
         if (len(problem) > 0) then
@@ -139,7 +137,7 @@ contains
             call next_line(text, first, last, line)
             if (line <= form%header_line .or. is_no_row(text(first:last))) cycle
             call split(text, first, last, form%separator, cells)
-            call take_row()
+            call take_row(text, line, requests, form, cells, rows, read_in)
             if (size(read_in%faults) > most_faults) exit
         end do
         if (form%doubt_line > 0 .and. form%separator /= ';' .and. .not. form%sure) then
@@ -147,134 +145,10 @@ contains
                 // 'mark, or does it part thousands? No number of the file tells: write it ' &
                 // 'without, or separate the cells by semicolons')
         end if
-        if (form%cut_line > 0) call read_in%add_fault(form%cut_line, other_size( &
+        if (form%cut_line > 0) call read_in%add_fault(form%cut_line, other_size(form, &
             form%last_cells) // ', and the row before has more: the file is cut short')
         read_in%values = read_in%values(:, :rows)
         read_in%lines = read_in%lines(:rows)
-
-    contains
-
-        subroutine take_row()
-            integer :: place, column, i
-
-            if (.not. cells%sound) then
-                call read_in%add_fault(line, 'a quote is not closed')
-                return
-            else if (all(cells%last(:cells%n) < cells%first(:cells%n))) then
-                if (form%empty_row == 0) form%empty_row = line
-                return
-            else if (rows == 0 .and. form%word_rows < 2) then
-                if (holds_words_only()) then
-                    form%word_rows = form%word_rows + 1
-                    return
-                end if
-            end if
-            if (form%empty_row > 0) call read_in%add_fault(form%empty_row, &
-                'the row is empty, and there are others behind it')
-            form%empty_row = 0
-            if (cells%n < form%least_cells .or. any(cells%last(form%named_cells + 1:cells%n) &
-                >= cells%first(form%named_cells + 1:cells%n))) then
-                call read_in%add_fault(line, other_size(cells%n))
-                return
-            end if
-            form%cut_line = 0
-            if (cells%n < min(form%named_cells, form%last_cells)) form%cut_line = line
-            form%last_cells = cells%n
-            rows = rows + 1
-            read_in%lines(rows) = line
-            column = 0
-            do i = 1, size(requests)
-                place = form%places(i)
-                if (place == 0) cycle
-                column = column + 1
-                call take_cell(text(cells%first(place):cells%last(place)), &
-                    form%titles(place)%text, read_in%values(column, rows))
-                associate (value => read_in%values(column, rows))
-                    if (abs(value) > largest / max(1.0_dp, abs(requests(i)%factor))) then
-                        call read_in%add_fault(line, requests(i)%name &
-                            // ': the number, times its factor, must not exceed 1e100')
-                    else
-                        value = requests(i)%factor * value
-                    end if
-                end associate
-            end do
-        end subroutine take_row
-
-        !> What is wrong with a row of too few cells, or of cells without a name.
-        function other_size(n) result(why)
-            integer, intent(in) :: n   !! cells of the row
-            character(len=:), allocatable :: why
-
-            why = 'has not as many cells as the header: ' // whole_text(n) // ' for ' &
-                // whole_text(form%named_cells)
-            if (form%separator == ',' .and. n > form%named_cells) why = why &
-                // ' (cells with a decimal comma need quotes)'
-        end function other_size
-
-        !> A row of units or the like: its cells that count look like no numbers, but for 1, the
-        !> unit of what has none. Time or place, the first column that is asked for, has one.
-        pure function holds_words_only() result(yes)
-            logical :: yes
-            character(len=:), allocatable :: word
-            integer :: words, i
-
-            words = 0
-            do i = 1, size(form%places)
-                if (form%places(i) == 0 .or. form%places(i) > cells%n) cycle
-                word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
-                if (len(word) == 0 .or. word == '1' .and. i > 1) cycle
-                words = words + 1
-                yes = scan(word(1:1), digits // '+-.,') == 0 .or. scan(word, digits) == 0 &
-                    .or. has_unit_behind(word)
-                yes = yes .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
-                if (.not. yes) return
-            end do
-            yes = words > 0
-        end function holds_words_only
-
-        subroutine take_cell(word, title, value)
-            character(len=*), intent(in) :: word, title
-            real(dp), intent(out) :: value
-            character(len=len(word)) :: number
-            character(len=:), allocatable :: why
-            integer :: mark, comma
-            logical :: is_number, too_small
-
-            why = ''
-            number = word
-            mark = merge(1, 0, index(word, '.') > 0)
-            comma = index(word, ',')
-            if (comma > 0) then
-                number(comma:comma) = '.'
-                if (mark == 1) why = 'has a decimal point and a comma'
-                mark = 2
-                if (.not. may_part_thousands(word)) then
-                    form%sure = .true.
-                else if (form%doubt_line == 0) then
-                    form%doubt_line = line
-                    form%in_doubt = printable(title) // " = '" // word // "'"
-                end if
-            end if
-            if (form%mark == 0 .and. mark > 0) form%mark_line = line
-            if (form%mark == 0) form%mark = mark
-            call read_number(number, value, is_number, too_small)
-            if (is_number) is_number = ieee_is_finite(value)
-            if (len(word) == 0) then
-                why = 'must be a finite number, and the cell is empty'
-            else if (.not. is_number .and. len(why) == 0) then
-                why = 'must be a finite number'
-            else if (too_small) then
-                why = 'is smaller than any number here but 0'
-            else if (mark > 0 .and. mark /= form%mark .and. len(why) == 0) then
-                why = 'has a decimal ' // merge('point', 'comma', mark == 1) // ', and line ' &
-                    // whole_text(form%mark_line) // ' has another mark'
-            end if
-            if (len(why) == 0) return
-            value = 0.0_dp
-            call read_in%add_fault(line, printable(title) // " = '" // printable(word) // "': " &
-                // why)
-        end subroutine take_cell
-
     end subroutine take_text
 
     !> Empty, or a comment: not a row whose first cell spreadsheets could not compute.
@@ -356,69 +230,8 @@ contains
         end if
     end subroutine find_header
 
-    !> Names of several columns, and names asked for that are not there. Takes the others.
-    subroutine check_titles(requests, form, read_in)
-        type(column_request), intent(in) :: requests(:)
-        type(file_form), intent(in) :: form
-        type(table), intent(inout) :: read_in
-        character(len=:), allocatable :: title
-        type(line_text) :: name
-        integer, allocatable :: places(:)
-        integer :: i
-
-        do i = 1, size(requests)
-            title = title_of(requests(i))
-            if (form%places(i) == 0) then
-                if (requests(i)%needed) call read_in%add_fault(form%header_line, &
-                    "column '" // printable(title) // "' is missing: there are " // read_in%titles)
-                cycle
-            end if
-            name%text = requests(i)%name
-            read_in%names = [read_in%names, name]
-            places = places_of(requests(i), form%titles, most=2)
-            if (size(places) < 2) cycle
-            associate (first => form%titles(places(1))%text, second => form%titles(places(2))%text)
-                if (first == second) then
-                    call read_in%add_fault(form%header_line, "column '" // printable(first) &
-                        // "' is given twice")
-                else
-                    call read_in%add_fault(form%header_line, "columns '" // printable(first) &
-                        // "' and '" // printable(second) // "' may both be " &
-                        // requests(i)%name // ': name one as it is written')
-                end if
-            end associate
-        end do
-    end subroutine check_titles
-
-    !> Titles may stand before the names, numbers may not.
-    subroutine check_lines_before(text, form, read_in)
-        character(len=*), intent(in) :: text
-        type(file_form), intent(in) :: form
-        type(table), intent(inout) :: read_in
-        type(line_cells) :: cells
-        real(dp) :: value
-        integer :: first, last, line, i
-        logical :: is_number, too_small
-
-        last = -1
-        line = 0
-        do while (line < form%header_line - 1)
-            call next_line(text, first, last, line)
-            if (is_no_row(text(first:last))) cycle
-            call split(text, first, last, form%separator, cells)
-            is_number = cells%n > 1
-            do i = 1, cells%n
-                if (.not. is_number) exit
-                call read_number(text(cells%first(i):cells%last(i)), value, is_number, too_small)
-            end do
-            if (.not. is_number) cycle
-            call read_in%add_fault(line, 'numbers stand before the line of column names')
-            return
-        end do
-    end subroutine check_lines_before
-
     !> What a line is if it is the line of names.
-    subroutine read_titles(text, first, last, requests, form)
+    pure subroutine read_titles(text, first, last, requests, form)
         character(len=*), intent(in) :: text
         integer, intent(in) :: first, last
         type(column_request), intent(in) :: requests(:)
@@ -487,8 +300,42 @@ contains
         if (strictness > 1 .and. unit > 1) name = trim(name(:unit - 1))
     end function simplified
 
+    !> Names of several columns, and names asked for that are not there. Takes the others.
+    subroutine check_titles(requests, form, read_in)
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(in) :: form
+        type(table), intent(inout) :: read_in
+        character(len=:), allocatable :: title
+        type(line_text) :: name
+        integer, allocatable :: places(:)
+        integer :: i
+
+        do i = 1, size(requests)
+            title = title_of(requests(i))
+            if (form%places(i) == 0) then
+                if (requests(i)%needed) call read_in%add_fault(form%header_line, &
+                    "column '" // printable(title) // "' is missing: there are " // read_in%titles)
+                cycle
+            end if
+            name%text = requests(i)%name
+            read_in%names = [read_in%names, name]
+            places = places_of(requests(i), form%titles, most=2)
+            if (size(places) < 2) cycle
+            associate (first => form%titles(places(1))%text, second => form%titles(places(2))%text)
+                if (first == second) then
+                    call read_in%add_fault(form%header_line, "column '" // printable(first) &
+                        // "' is given twice")
+                else
+                    call read_in%add_fault(form%header_line, "columns '" // printable(first) &
+                        // "' and '" // printable(second) // "' may both be " &
+                        // requests(i)%name // ': name one as it is written')
+                end if
+            end associate
+        end do
+    end subroutine check_titles
+
     !> The cells of a line, for messages: of the separators the first one that the line has.
-    function cells_of(text, number) result(list)
+    pure function cells_of(text, number) result(list)
         character(len=*), intent(in) :: text
         integer, intent(in) :: number        !! of the line
         character(len=:), allocatable :: list
@@ -521,6 +368,124 @@ contains
         end do
     end function list_of
 
+    !> Titles may stand before the names, numbers may not.
+    subroutine check_lines_before(text, form, read_in)
+        character(len=*), intent(in) :: text
+        type(file_form), intent(in) :: form
+        type(table), intent(inout) :: read_in
+        type(line_cells) :: cells
+        real(dp) :: value
+        integer :: first, last, line, i
+        logical :: is_number, too_small
+
+        last = -1
+        line = 0
+        do while (line < form%header_line - 1)
+            call next_line(text, first, last, line)
+            if (is_no_row(text(first:last))) cycle
+            call split(text, first, last, form%separator, cells)
+            is_number = cells%n > 1
+            do i = 1, cells%n
+                if (.not. is_number) exit
+                call read_number(text(cells%first(i):cells%last(i)), value, is_number, too_small)
+            end do
+            if (.not. is_number) cycle
+            call read_in%add_fault(line, 'numbers stand before the line of column names')
+            return
+        end do
+    end subroutine check_lines_before
+
+    ! ---- rows --------------------------------------------------------------------------------
+
+    subroutine take_row(text, line, requests, form, cells, rows, read_in)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: line        !! of the file
+        type(column_request), intent(in) :: requests(:)
+        type(file_form), intent(inout) :: form
+        type(line_cells), intent(in) :: cells
+        integer, intent(inout) :: rows     !! taken so far
+        type(table), intent(inout) :: read_in
+        integer :: place, column, i
+
+        if (.not. cells%sound) then
+            call read_in%add_fault(line, 'a quote is not closed')
+            return
+        else if (all(cells%last(:cells%n) < cells%first(:cells%n))) then
+            if (form%empty_row == 0) form%empty_row = line
+            return
+        else if (rows == 0 .and. form%word_rows < 2) then
+            if (holds_words_only(text, form, cells)) then
+                form%word_rows = form%word_rows + 1
+                return
+            end if
+        end if
+        if (form%empty_row > 0) call read_in%add_fault(form%empty_row, &
+            'the row is empty, and there are others behind it')
+        form%empty_row = 0
+        if (cells%n < form%least_cells .or. any(cells%last(form%named_cells + 1:cells%n) &
+            >= cells%first(form%named_cells + 1:cells%n))) then
+            call read_in%add_fault(line, other_size(form, cells%n))
+            return
+        end if
+        form%cut_line = 0
+        if (cells%n < min(form%named_cells, form%last_cells)) form%cut_line = line
+        form%last_cells = cells%n
+        rows = rows + 1
+        read_in%lines(rows) = line
+        column = 0
+        do i = 1, size(requests)
+            place = form%places(i)
+            if (place == 0) cycle
+            column = column + 1
+            call take_cell(text(cells%first(place):cells%last(place)), line, &
+                form%titles(place)%text, form, read_in%values(column, rows), read_in)
+            associate (value => read_in%values(column, rows))
+                if (abs(value) > largest / max(1.0_dp, abs(requests(i)%factor))) then
+                    call read_in%add_fault(line, requests(i)%name // ': the number, times its ' &
+                        // 'factor, must not exceed 1e100')
+                else
+                    value = requests(i)%factor * value
+                end if
+            end associate
+        end do
+    end subroutine take_row
+
+    !> What is wrong with a row of too few cells, or of cells without a name.
+    pure function other_size(form, n) result(text)
+        type(file_form), intent(in) :: form
+        integer, intent(in) :: n                      !! cells of the row
+        character(len=:), allocatable :: text
+
+        text = 'has not as many cells as the header: ' // whole_text(n) // ' for ' &
+            // whole_text(form%named_cells)
+        if (form%separator == ',' .and. n > form%named_cells) text = text &
+            // ' (cells with a decimal comma need quotes)'
+    end function other_size
+
+    !> A row of units or the like: its cells that count look like no numbers, but for 1, which is
+    !> the unit of what has none. Time or place, the first column that is asked for, has one.
+    pure function holds_words_only(text, form, cells) result(yes)
+        character(len=*), intent(in) :: text
+        type(file_form), intent(in) :: form
+        type(line_cells), intent(in) :: cells
+        logical :: yes
+        character(len=:), allocatable :: word
+        integer :: words, i
+
+        words = 0
+        do i = 1, size(form%places)
+            if (form%places(i) == 0 .or. form%places(i) > cells%n) cycle
+            word = lower(text(cells%first(form%places(i)):cells%last(form%places(i))))
+            if (len(word) == 0 .or. word == '1' .and. i > 1) cycle
+            words = words + 1
+            yes = scan(word(1:1), digits // '+-.,') == 0 .or. scan(word, digits) == 0 &
+                .or. has_unit_behind(word)
+            yes = yes .and. all(word /= ['nan     ', 'inf     ', 'infinity'])
+            if (.not. yes) return
+        end do
+        yes = words > 0
+    end function holds_words_only
+
     !> Units that begin with a number: 1/s, 10^-6, 0.1 mm. Dates (1/2/2026), times (12:30) and
     !> numbers in groups (10 000) are none.
     pure function has_unit_behind(word) result(yes)
@@ -535,6 +500,51 @@ contains
         yes = next <= len(word)
         if (yes) yes = word(next:next) == '^' .or. scan(word(next:next), digits // '+-.,:') == 0
     end function has_unit_behind
+
+    subroutine take_cell(word, line, title, form, value, read_in)
+        character(len=*), intent(in) :: word, title
+        integer, intent(in) :: line
+        type(file_form), intent(inout) :: form
+        real(dp), intent(out) :: value
+        type(table), intent(inout) :: read_in
+        character(len=len(word)) :: number
+        character(len=:), allocatable :: why
+        integer :: mark, comma
+        logical :: is_number, too_small
+
+        why = ''
+        number = word
+        mark = merge(1, 0, index(word, '.') > 0)
+        comma = index(word, ',')
+        if (comma > 0) then
+            number(comma:comma) = '.'
+            if (mark == 1) why = 'has a decimal point and a comma'
+            mark = 2
+            if (.not. may_part_thousands(word)) then
+                form%sure = .true.
+            else if (form%doubt_line == 0) then
+                form%doubt_line = line
+                form%in_doubt = printable(title) // " = '" // word // "'"
+            end if
+        end if
+        if (form%mark == 0 .and. mark > 0) form%mark_line = line
+        if (form%mark == 0) form%mark = mark
+        call read_number(number, value, is_number, too_small)
+        if (is_number) is_number = ieee_is_finite(value)
+        if (len(word) == 0) then
+            why = 'must be a finite number, and the cell is empty'
+        else if (.not. is_number .and. len(why) == 0) then
+            why = 'must be a finite number'
+        else if (too_small) then
+            why = 'is smaller than any number here but 0'
+        else if (mark > 0 .and. mark /= form%mark .and. len(why) == 0) then
+            why = 'has a decimal ' // merge('point', 'comma', mark == 1) // ', and line ' &
+                // whole_text(form%mark_line) // ' has another mark'
+        end if
+        if (len(why) == 0) return
+        value = 0.0_dp
+        call read_in%add_fault(line, printable(title) // " = '" // printable(word) // "': " // why)
+    end subroutine take_cell
 
     !> 1,000 and -12,500 are numbers with a decimal comma, and such with a comma behind thousands.
     pure function may_part_thousands(word) result(yes)
@@ -553,14 +563,12 @@ contains
 
     !> The cells of a line, without the blanks and the quotes around them. A blank that separates
     !> stands for any number of blanks and tabs.
-    subroutine split(text, first, last, separator, cells)
+    pure subroutine split(text, first, last, separator, cells)
         character(len=*), intent(in) :: text
         integer, intent(in) :: first, last              !! characters of the line
         character(len=1), intent(in) :: separator
         type(line_cells), intent(inout) :: cells
-        integer :: at         ! start of the cell, or of what is in its quotes
-        integer :: cell_end
-        integer :: next       ! separator behind it, or behind the line
+        integer :: at, cell_end, next
 
         cells%n = 0
         cells%sound = .true.
@@ -571,63 +579,68 @@ contains
                 at = at + 1
             end do
             if (separator == ' ' .and. at > last) exit
-            call find_end()
+            call find_end(text, at, last, separator, cell_end, next, cells%sound)
             call add_cell(cells, at, cell_end)
             if (next > last) exit
             at = next + 1
         end do
-
-    contains
-
-        !> Where does the cell that starts at `at` end?
-        subroutine find_end()
-            integer :: quote
-            logical :: quoted
-
-            quoted = .false.
-            if (at <= last) quoted = text(at:at) == '"'
-            next = at
-            if (quoted) then
-                at = at + 1
-                quote = closing_quote(at)
-                cells%sound = cells%sound .and. quote <= last
-                next = quote + 1
-                do while (at < quote)   ! numbers may be filled up with blanks inside their quotes
-                    if (.not. is_blank(text(at:at))) exit
-                    at = at + 1
-                end do
-            end if
-            do while (next <= last)
-                if (text(next:next) == separator) exit
-                if (separator == ' ' .and. text(next:next) == tab) exit
-                if (quoted) cells%sound = cells%sound .and. is_blank(text(next:next))
-                next = next + 1
-            end do
-            cell_end = next - 1
-            if (quoted) cell_end = quote - 1
-            do while (cell_end >= at)
-                if (.not. is_blank(text(cell_end:cell_end))) exit
-                cell_end = cell_end - 1
-            end do
-        end subroutine find_end
-
-        !> The quote that ends a text; two in a row belong to it. Behind the line if there is none.
-        pure function closing_quote(from) result(place)
-            integer, intent(in) :: from
-            integer :: place
-
-            place = from
-            do while (place <= last)
-                if (text(place:place) == '"') then
-                    if (place == last) return
-                    if (text(place + 1:place + 1) /= '"') return
-                    place = place + 1
-                end if
-                place = place + 1
-            end do
-        end function closing_quote
-
     end subroutine split
+
+    !> Where does the cell that starts at `at` end?
+    pure subroutine find_end(text, at, last, separator, cell_end, next, sound)
+        character(len=*), intent(in) :: text
+        integer, intent(inout) :: at            !! start of the cell; of what is in its quotes
+        integer, intent(in) :: last             !! character of the line
+        character(len=1), intent(in) :: separator
+        integer, intent(out) :: cell_end
+        integer, intent(out) :: next            !! separator behind it, or behind the line
+        logical, intent(inout) :: sound
+        integer :: quote
+        logical :: quoted
+
+        quoted = .false.
+        if (at <= last) quoted = text(at:at) == '"'
+        next = at
+        if (quoted) then
+            at = at + 1
+            quote = closing_quote(text, at, last)
+            sound = sound .and. quote <= last
+            next = quote + 1
+            do while (at < quote)   ! numbers may be filled up with blanks inside their quotes
+                if (.not. is_blank(text(at:at))) exit
+                at = at + 1
+            end do
+        end if
+        do while (next <= last)
+            if (text(next:next) == separator) exit
+            if (separator == ' ' .and. text(next:next) == tab) exit
+            if (quoted) sound = sound .and. is_blank(text(next:next))
+            next = next + 1
+        end do
+        cell_end = next - 1
+        if (quoted) cell_end = quote - 1
+        do while (cell_end >= at)
+            if (.not. is_blank(text(cell_end:cell_end))) exit
+            cell_end = cell_end - 1
+        end do
+    end subroutine find_end
+
+    !> The quote that ends a text; two in a row belong to it. Behind the line if there is none.
+    pure function closing_quote(text, from, last) result(place)
+        character(len=*), intent(in) :: text
+        integer, intent(in) :: from, last
+        integer :: place
+
+        place = from
+        do while (place <= last)
+            if (text(place:place) == '"') then
+                if (place == last) return
+                if (text(place + 1:place + 1) /= '"') return
+                place = place + 1
+            end if
+            place = place + 1
+        end do
+    end function closing_quote
 
     pure function is_blank(c) result(blank)
         character(len=1), intent(in) :: c

@@ -18,7 +18,6 @@ module namelist_parser
     integer, parameter :: most_faults = 40                !! then the rest is not read
     integer, parameter :: most_groups = 100               !! likewise
     character(len=1), parameter :: line_feed = new_line('a')
-    character(len=*), parameter :: blanks = ' ' // achar(9) // line_feed
 
     type :: value_token
         character(len=:), allocatable :: text
@@ -63,8 +62,7 @@ contains
         type(parsed_text), intent(out) :: parsed
         character(len=:), allocatable :: text, group
         type(cursor) :: here
-        integer :: ended_in   ! line in which the group before ended
-        integer :: stray_in   ! line of the last text outside any group
+        integer :: ended_in, stray_in   ! lines
         logical :: inside
 
         text = lines // line_feed
@@ -78,141 +76,24 @@ contains
             if (here%at > len(text)) exit
             if (starts_group(text, here%at)) then
                 here%at = here%at + 1
-                call start_group()
+                call start_group(text, here, inside, group, parsed)
             else if (.not. inside) then
-                call refuse_stray_text()
+                call refuse_stray_text(text, here, group, ended_in, stray_in, parsed)
             else if (text(here%at:here%at) == '/') then
                 here%at = here%at + 1
                 inside = .false.
                 ended_in = here%line
             else
-                call read_entry()
+                call read_entry(text, here, group, parsed)
             end if
             if (size(parsed%faults) >= most_faults .and. .not. parsed%broken) then
-                call add_fault(here%line, 'there are too many faults: what follows is not read')
+                call add_fault(parsed, here%line, 'there are too many faults: what follows is ' &
+                    // 'not read')
                 parsed%broken = .true.
             end if
         end do
-        if (inside .and. .not. parsed%broken) call refuse_open_group()
+        if (inside .and. .not. parsed%broken) call refuse_open_group(parsed)
         parsed%entries = parsed%entries(:parsed%n_entries)
-
-    contains
-
-        !> The start of a group, or `&end`.
-        subroutine start_group()
-            type(group_seen) :: seen
-            character(len=:), allocatable :: name
-            integer :: i
-
-            name = name_at(text, here%at)
-            here%at = here%at + len(name)
-            name = lower(name)
-            if (inside .and. name /= 'end') call refuse_open_group()
-            inside = name /= 'end'
-            if (.not. inside) return
-            group = name
-            do i = 1, size(parsed%groups)
-                if (parsed%groups(i)%name /= group) cycle
-                call add_fault(here%line, 'group &' // group &
-                    // ' is given twice, first in line ' // whole_text(parsed%groups(i)%line))
-                exit
-            end do
-            seen%name = group
-            seen%line = here%line
-            parsed%groups = [parsed%groups, seen]
-            if (size(parsed%groups) <= most_groups) return
-            call add_fault(here%line, 'there are too many groups: what follows is not read')
-            parsed%broken = .true.
-        end subroutine start_group
-
-        !> The group that was opened last has no end.
-        subroutine refuse_open_group()
-            associate (group => parsed%groups(size(parsed%groups)))
-                call add_fault(group%line, 'group &' // group%name // " is not ended by '/'")
-            end associate
-        end subroutine refuse_open_group
-
-        !> Fortran's own reader skips what stands outside groups; then so it would a group whose `&`
-        !> was forgotten. Lines in a row are one fault.
-        subroutine refuse_stray_text()
-            character(len=:), allocatable :: words
-            integer :: last
-
-            last = line_end(text, here%at)
-            words = printable(text(here%at:last))
-            here%at = last + 1
-            if (here%line == ended_in) then
-                call add_fault(here%line, "text after the '/' that ends &" // group // ": '" &
-                    // words // "' (a comment starts with '!')")
-            else if (here%line /= stray_in + 1) then
-                call add_fault(here%line, "text outside any group: '" // words // "'")
-            end if
-            stray_in = here%line
-        end subroutine refuse_stray_text
-
-        !> `key = values`, `key(i) = ...` or `key(i:j:k) = ...`
-        subroutine read_entry()
-            type(namelist_entry) :: entry
-            character(len=:), allocatable :: problem, name
-            integer :: most   ! values
-
-            name = name_at(text, here%at)
-            if (len(name) == 0) then
-                name = word_at(text, here%at)
-                if (len(name) == 0) name = text(here%at:here%at)
-                call add_fault(here%line, '&' // group // ": expected 'key = value', found '" &
-                    // printable(name) // "'")
-                here%at = here%at + len(name)
-                return
-            end if
-            entry%group = group
-            entry%line = here%line
-            entry%key = lower(name)
-            here%at = here%at + len(name)
-            problem = ''
-            call read_subscript(text, here, entry, most, problem)
-            call skip_blanks(text, here, also_commas=.false.)
-            if (here%at > len(text)) then
-                if (len(problem) == 0) problem = "expected '=' after the key"
-            else if (text(here%at:here%at) == '=') then
-                here%at = here%at + 1
-                call read_values(text, here, entry, parsed%broken, problem)
-                if (len(problem) == 0) call check_number_of_values(entry, most, problem)
-            else
-                if (len(problem) == 0) problem = "expected '=' after the key"
-                if (scan(text(here%at:here%at), '/&$') == 0) here%at = here%at &
-                    + max(1, len(word_at(text, here%at)))
-            end if
-            entry%faulty = len(problem) > 0
-            if (entry%faulty) call add_fault(entry%line, '&' // group // ' ' // entry%key &
-                // ': ' // problem)
-            if (.not. allocated(entry%values)) allocate (entry%values(0))
-            call append(entry)
-        end subroutine read_entry
-
-        subroutine append(entry)
-            type(namelist_entry), intent(in) :: entry
-            type(namelist_entry), allocatable :: more(:)
-            integer :: i
-
-            if (parsed%n_entries == size(parsed%entries)) then
-                allocate (more(2 * parsed%n_entries))
-                do i = 1, parsed%n_entries
-                    more(i) = parsed%entries(i)
-                end do
-                call move_alloc(more, parsed%entries)
-            end if
-            parsed%n_entries = parsed%n_entries + 1
-            parsed%entries(parsed%n_entries) = entry
-        end subroutine append
-
-        subroutine add_fault(line, why)
-            integer, intent(in) :: line
-            character(len=*), intent(in) :: why
-
-            call append_fault(parsed%faults, line, why)
-        end subroutine add_fault
-
     end subroutine parse_namelists
 
     !> Does `&name`, or `$name` as old programs write it, stand here?
@@ -224,6 +105,130 @@ contains
         starts = .false.
         if (scan(text(at:at), '&$') > 0) starts = len(name_at(text, at + 1)) > 0
     end function starts_group
+
+    !> The start of a group, or `&end`.
+    subroutine start_group(text, here, inside, group, parsed)
+        character(len=*), intent(in) :: text
+        type(cursor), intent(inout) :: here
+        logical, intent(inout) :: inside
+        character(len=:), allocatable, intent(inout) :: group
+        type(parsed_text), intent(inout) :: parsed
+        type(group_seen) :: seen
+        character(len=:), allocatable :: name
+        integer :: i
+
+        name = name_at(text, here%at)
+        here%at = here%at + len(name)
+        name = lower(name)
+        if (inside .and. name /= 'end') call refuse_open_group(parsed)
+        inside = name /= 'end'
+        if (.not. inside) return
+        group = name
+        do i = 1, size(parsed%groups)
+            if (parsed%groups(i)%name /= group) cycle
+            call add_fault(parsed, here%line, 'group &' // group &
+                // ' is given twice, first in line ' // whole_text(parsed%groups(i)%line))
+            exit
+        end do
+        seen%name = group
+        seen%line = here%line
+        parsed%groups = [parsed%groups, seen]
+        if (size(parsed%groups) <= most_groups) return
+        call add_fault(parsed, here%line, 'there are too many groups: what follows is not read')
+        parsed%broken = .true.
+    end subroutine start_group
+
+    !> The group that was opened last has no end.
+    subroutine refuse_open_group(parsed)
+        type(parsed_text), intent(inout) :: parsed
+
+        associate (group => parsed%groups(size(parsed%groups)))
+            call add_fault(parsed, group%line, 'group &' // group%name // " is not ended by '/'")
+        end associate
+    end subroutine refuse_open_group
+
+    !> Fortran's own reader skips what stands outside groups; then so it would a group whose `&` was
+    !> forgotten. Lines in a row are one fault.
+    subroutine refuse_stray_text(text, here, group, ended_in, stray_in, parsed)
+        character(len=*), intent(in) :: text, group   !! the group before
+        type(cursor), intent(inout) :: here
+        integer, intent(in) :: ended_in               !! line in which that ended
+        integer, intent(inout) :: stray_in            !! line of the last stray text
+        type(parsed_text), intent(inout) :: parsed
+        character(len=:), allocatable :: words
+        integer :: last
+
+        last = line_end(text, here%at)
+        words = printable(text(here%at:last))
+        here%at = last + 1
+        if (here%line == ended_in) then
+            call add_fault(parsed, here%line, "text after the '/' that ends &" // group // ": '" &
+                // words // "' (a comment starts with '!')")
+        else if (here%line /= stray_in + 1) then
+            call add_fault(parsed, here%line, "text outside any group: '" // words // "'")
+        end if
+        stray_in = here%line
+    end subroutine refuse_stray_text
+
+    !> `key = values`, `key(i) = ...` or `key(i:j:k) = ...`
+    subroutine read_entry(text, here, group, parsed)
+        character(len=*), intent(in) :: text, group
+        type(cursor), intent(inout) :: here
+        type(parsed_text), intent(inout) :: parsed
+        type(namelist_entry) :: entry
+        character(len=:), allocatable :: problem, name
+        integer :: most   ! values
+
+        name = name_at(text, here%at)
+        if (len(name) == 0) then
+            name = word_at(text, here%at)
+            if (len(name) == 0) name = text(here%at:here%at)
+            call add_fault(parsed, here%line, '&' // group // ": expected 'key = value', found '" &
+                // printable(name) // "'")
+            here%at = here%at + len(name)
+            return
+        end if
+        entry%group = group
+        entry%line = here%line
+        entry%key = lower(name)
+        here%at = here%at + len(name)
+        problem = ''
+        call read_subscript(text, here, entry, most, problem)
+        call skip_blanks(text, here, also_commas=.false.)
+        if (here%at > len(text)) then
+            if (len(problem) == 0) problem = "expected '=' after the key"
+        else if (text(here%at:here%at) == '=') then
+            here%at = here%at + 1
+            call read_values(text, here, entry, parsed%broken, problem)
+            if (len(problem) == 0) call check_number_of_values(entry, most, problem)
+        else
+            if (len(problem) == 0) problem = "expected '=' after the key"
+            if (scan(text(here%at:here%at), '/&$') == 0) here%at = here%at &
+                + max(1, len(word_at(text, here%at)))
+        end if
+        entry%faulty = len(problem) > 0
+        if (entry%faulty) call add_fault(parsed, entry%line, '&' // group // ' ' // entry%key &
+            // ': ' // problem)
+        if (.not. allocated(entry%values)) allocate (entry%values(0))
+        call append(parsed, entry)
+    end subroutine read_entry
+
+    subroutine append(parsed, entry)
+        type(parsed_text), intent(inout) :: parsed
+        type(namelist_entry), intent(in) :: entry
+        type(namelist_entry), allocatable :: more(:)
+        integer :: i
+
+        if (parsed%n_entries == size(parsed%entries)) then
+            allocate (more(2 * parsed%n_entries))
+            do i = 1, parsed%n_entries
+                more(i) = parsed%entries(i)
+            end do
+            call move_alloc(more, parsed%entries)
+        end if
+        parsed%n_entries = parsed%n_entries + 1
+        parsed%entries(parsed%n_entries) = entry
+    end subroutine append
 
     ! ---- subscripts --------------------------------------------------------------------------
 
@@ -309,12 +314,14 @@ contains
         type(namelist_entry), intent(in) :: entry
         integer, intent(in) :: most
         character(len=:), allocatable, intent(inout) :: problem
+        character(len=80) :: text
         integer :: n
 
         n = size(entry%values)
         if (n > most) then
-            problem = 'has ' // whole_text(n) // ' values for the ' // whole_text(most) &
-                // ' places of its subscript'
+            write (text, '(a, i0, a, i0, a)') 'has ', n, ' values for the ', most, &
+                ' places of its subscript'
+            problem = trim(text)
         else if (entry%first + real(n - 1) * entry%stride > most_values) then
             problem = 'has values beyond place 1000000'
         end if
@@ -332,8 +339,7 @@ contains
         type(value_token), allocatable :: tokens(:)
         type(value_token) :: token
         character(len=:), allocatable :: why
-        integer :: n        ! values so far
-        integer :: repeat   ! of the next one
+        integer :: n, repeat
         logical :: after_comma
 
         allocate (tokens(8))
@@ -355,111 +361,42 @@ contains
                     // 'line without it'
                 here%at = here%at + 1
             else
-                call read_token()
+                call read_token(text, here, token, repeat, broken, why)
                 after_comma = .false.
-                call add_tokens()
+                call add_tokens(tokens, n, token, repeat, why)
             end if
             if (len(problem) == 0) problem = why
         end do
         entry%values = tokens(:n)
         if (n == 0 .and. len(problem) == 0) problem = 'has no value'
-
-    contains
-
-        !> One value, quoted or not, with its repeat count `r*value`; `repeat` is 0 where there is
-        !> none.
-        subroutine read_token()
-            character(len=:), allocatable :: word
-            integer :: star
-            logical :: ok
-
-            repeat = 1
-            word = word_at(text, here%at)
-            star = index(word, '*')
-            if (star > 1) then
-                if (verify(word(:star - 1), '0123456789') > 0) star = 0
-            end if
-            if (star > 1) then
-                call read_place(word(:star - 1), .false., repeat, ok)
-                if (.not. ok .or. repeat < 1) why = "'" // printable(word) &
-                    // "' repeats a value too often, or not at all"
-                if (len(why) > 0) repeat = 0
-                here%at = here%at + star
-                word = word(star + 1:)
-                if (len(word) == 0 .and. scan(text(here%at:here%at), '''"') == 0) then
-                    why = 'a value is missing after a repeat count'
-                    repeat = 0
-                    token%text = ''
-                    return
-                end if
-            end if
-            token%quoted = scan(text(here%at:here%at), '''"') > 0
-            if (token%quoted) then
-                call read_quoted(token%text)
-            else
-                token%text = word
-                here%at = here%at + len(word)
-            end if
-        end subroutine read_token
-
-        !> Text up to the quote that ends it, which stands twice where it belongs to the text.
-        !> Behind a quote that is missing nothing can be told: `broken`.
-        subroutine read_quoted(inner)
-            character(len=:), allocatable, intent(out) :: inner
-            character(len=1) :: quote
-            integer :: last, length, taken
-
-            quote = text(here%at:here%at)
-            last = line_end(text, here%at)
-            inner = text(here%at:last)
-            taken = 0
-            here%at = here%at + 1
-            do
-                length = index(text(here%at:last), quote) - 1
-                if (length < 0) then
-                    why = 'the text ' // quote // printable(inner(:taken) // text(here%at:last)) &
-                        // ' is not ended by a quote'
-                    broken = .true.
-                    return
-                end if
-                inner(taken + 1:taken + length) = text(here%at:here%at + length - 1)
-                taken = taken + length
-                here%at = here%at + length + 1
-                if (text(here%at:here%at) /= quote) exit
-                taken = taken + 1
-                inner(taken:taken) = quote
-                here%at = here%at + 1
-            end do
-            inner = inner(:taken)
-            if (scan(text(here%at:here%at), blanks // ',/!&$') > 0) return
-            why = 'the text ' // quote // printable(inner) // quote // ' is followed by ' &
-                // printable(text(here%at:last)) // ': a quote or a comma is missing'
-            broken = .true.
-        end subroutine read_quoted
-
-        subroutine add_tokens()
-            type(value_token), allocatable :: more(:)
-            integer :: i
-
-            if (n + repeat > most_values) then
-                why = 'has more than 1000000 values'
-                return
-            end if
-            if (n + repeat > size(tokens)) then
-                allocate (more(2 * (n + repeat)))
-                do i = 1, n
-                    call move_alloc(tokens(i)%text, more(i)%text)
-                    more(i)%quoted = tokens(i)%quoted
-                end do
-                call move_alloc(more, tokens)
-            end if
-            do i = n + 1, n + repeat
-                tokens(i) = token
-            end do
-            n = n + repeat
-        end subroutine add_tokens
-
     end subroutine read_values
+
+    pure subroutine add_tokens(tokens, n, token, repeat, problem)
+        type(value_token), allocatable, intent(inout) :: tokens(:)
+        integer, intent(inout) :: n
+        type(value_token), intent(in) :: token
+        integer, intent(in) :: repeat
+        character(len=:), allocatable, intent(inout) :: problem
+        type(value_token), allocatable :: more(:)
+        integer :: i
+
+        if (n + repeat > most_values) then
+            problem = 'has more than 1000000 values'
+            return
+        end if
+        if (n + repeat > size(tokens)) then
+            allocate (more(2 * (n + repeat)))
+            do i = 1, n
+                call move_alloc(tokens(i)%text, more(i)%text)
+                more(i)%quoted = tokens(i)%quoted
+            end do
+            call move_alloc(more, tokens)
+        end if
+        do i = n + 1, n + repeat
+            tokens(i) = token
+        end do
+        n = n + repeat
+    end subroutine add_tokens
 
     !> Is the word here a key, that is, followed by '=' (perhaps after a subscript)?
     pure function key_follows(text, at) result(follows)
@@ -481,6 +418,86 @@ contains
         end if
         follows = text(i:i) == '='
     end function key_follows
+
+    !> One value, quoted or not, with its repeat count `r*value`; `repeat` is 0 where there is none.
+    subroutine read_token(text, here, token, repeat, broken, problem)
+        character(len=*), intent(in) :: text
+        type(cursor), intent(inout) :: here
+        type(value_token), intent(out) :: token
+        integer, intent(out) :: repeat
+        logical, intent(inout) :: broken
+        character(len=:), allocatable, intent(inout) :: problem
+        character(len=:), allocatable :: word
+        integer :: star
+        logical :: ok
+
+        repeat = 1
+        word = word_at(text, here%at)
+        star = index(word, '*')
+        if (star > 1) then
+            if (verify(word(:star - 1), '0123456789') > 0) star = 0
+        end if
+        if (star > 1) then
+            call read_place(word(:star - 1), .false., repeat, ok)
+            if (.not. ok .or. repeat < 1) problem = "'" // printable(word) &
+                // "' repeats a value too often, or not at all"
+            if (len(problem) > 0) repeat = 0
+            here%at = here%at + star
+            word = word(star + 1:)
+            if (len(word) == 0 .and. scan(text(here%at:here%at), '''"') == 0) then
+                problem = 'a value is missing after a repeat count'
+                repeat = 0
+                token%text = ''
+                return
+            end if
+        end if
+        token%quoted = scan(text(here%at:here%at), '''"') > 0
+        if (token%quoted) then
+            call read_quoted(text, here, token%text, broken, problem)
+        else
+            token%text = word
+            here%at = here%at + len(word)
+        end if
+    end subroutine read_token
+
+    !> Text up to the quote that ends it, which stands twice where it belongs to the text. Behind a
+    !> quote that is missing nothing can be told: `broken`.
+    subroutine read_quoted(text, here, inner, broken, problem)
+        character(len=*), intent(in) :: text
+        type(cursor), intent(inout) :: here
+        character(len=:), allocatable, intent(out) :: inner
+        logical, intent(inout) :: broken
+        character(len=:), allocatable, intent(inout) :: problem
+        character(len=1) :: quote
+        integer :: last, length, n
+
+        quote = text(here%at:here%at)
+        last = line_end(text, here%at)
+        inner = text(here%at:last)
+        n = 0
+        here%at = here%at + 1
+        do
+            length = index(text(here%at:last), quote) - 1
+            if (length < 0) then
+                problem = 'the text ' // quote // printable(inner(:n) // text(here%at:last)) &
+                    // ' is not ended by a quote'
+                broken = .true.
+                return
+            end if
+            inner(n + 1:n + length) = text(here%at:here%at + length - 1)
+            n = n + length
+            here%at = here%at + length + 1
+            if (text(here%at:here%at) /= quote) exit
+            n = n + 1
+            inner(n:n) = quote
+            here%at = here%at + 1
+        end do
+        inner = inner(:n)
+        if (is_blank(text(here%at:here%at)) .or. scan(text(here%at:here%at), ',/!&$') > 0) return
+        problem = 'the text ' // quote // printable(inner) // quote // ' is followed by ' &
+            // printable(text(here%at:last)) // ': a quote or a comma is missing'
+        broken = .true.
+    end subroutine read_quoted
 
     ! ---- characters --------------------------------------------------------------------------
 
@@ -510,15 +527,18 @@ contains
         integer, intent(in) :: at
         integer :: place
 
-        place = at - 1 + verify(text(at:), blanks)
-        if (place < at) place = len(text) + 1
+        place = at
+        do while (place <= len(text))
+            if (.not. is_blank(text(place:place))) exit
+            place = place + 1
+        end do
     end function past_blanks
 
     pure function is_blank(c) result(blank)
         character(len=1), intent(in) :: c
         logical :: blank
 
-        blank = index(blanks, c) > 0
+        blank = c == ' ' .or. c == achar(9) .or. c == line_feed
     end function is_blank
 
     !> The last character before the end of the line.
@@ -563,5 +583,13 @@ contains
         end do
         word = text(at:i - 1)
     end function word_at
+
+    pure subroutine add_fault(parsed, line, text)
+        type(parsed_text), intent(inout) :: parsed
+        integer, intent(in) :: line
+        character(len=*), intent(in) :: text
+
+        call append_fault(parsed%faults, line, text)
+    end subroutine add_fault
 
 end module namelist_parser

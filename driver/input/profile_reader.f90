@@ -146,90 +146,104 @@ contains
         integer :: faults_before, j
 
         faults_before = size(file%faults)
-        call read_columns()
+        call read_columns(file, group, key, axes, names, read_in, read_netcdf)
         sound = size(file%faults) == faults_before .and. allocated(read_in%values)
         if (.not. sound) return
-        map%x = nodes_in(axes(1))
-        map%z = nodes_in(axes(2))
+        map%x = nodes_in(read_in, axes(1))
+        map%z = nodes_in(read_in, axes(2))
         if (read_in%column(trim(axes(2))) == 0) then
             call file%reject(group, key, "its file has no column '" // trim(axes(2)) // "'")
         else if (size(map%x) * size(map%z) /= size(read_in%values, 2)) then
-            call refuse_nodes()
+            call refuse_nodes(file, group, key, axes)
         end if
         do j = 1, size(names)
             if (read_in%column(trim(names(j))) == 0) call file%reject(group, key, &
                 "its file has no column '" // trim(names(j)) // "'")
         end do
         sound = size(file%faults) == faults_before
-        if (sound) call fill_map()
-
-    contains
-
-        subroutine read_columns()
-            type(column_request) :: requests(size(names) + 2)
-            character(len=:), allocatable :: name
-            integer :: first, i
-
-            call file%get_text(group, key, name)
-            if (len(name) == 0) return
-            if (name(1:1) == '@') name = name(2:)
-            if (len(name) == 0) then
-                call file%reject(group, key, 'must name a file')
-                return
-            end if
-            requests(1)%name = trim(axes(1))
-            requests(2)%name = trim(axes(2))
-            do i = 1, size(names)
-                requests(2 + i)%name = trim(names(i))
-            end do
-            first = merge(2, 1, axes(1) == '')
-            if (.not. is_netcdf(name)) then
-                call read_table(file%beside(name), requests(first:), read_in)
-            else if (present(read_netcdf)) then
-                call read_netcdf(file%beside(name), requests(first:), read_in)
-            else
-                call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
-                return
-            end if
-            call refuse_table(file, group, key, read_in)
-        end subroutine read_columns
-
-        !> Places along an axis that a file has; 0 if it does not have the axis.
-        pure function nodes_in(axis) result(nodes)
-            character(len=*), intent(in) :: axis
-            real(dp), allocatable :: nodes(:)
-
-            nodes = [0.0_dp]
-            if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
-                read_in%numbers(trim(axis)))
-        end function nodes_in
-
-        subroutine fill_map()
-            integer :: columns(size(names)), along(2), i, k, row
-
-            columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
-            along = [(read_in%column(trim(axes(j))), j = 1, 2)]
-            allocate (map%values(size(names), size(map%x), size(map%z)), source=huge(1.0_dp))
-            i = 1
-            do row = 1, size(read_in%values, 2)
-                if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
-                k = nodes_up_to(map%z, read_in%values(along(2), row))
-                map%values(:, i, k) = read_in%values(columns, row)
-            end do
-            sound = all(map%values < huge(1.0_dp))   ! or one stands twice, and another is missing
-            if (.not. sound) call refuse_nodes()
-        end subroutine fill_map
-
-        subroutine refuse_nodes()
-            if (axes(1) == '') then
-                call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
-            else
-                call file%reject(group, key, 'its file must have each node of a grid once: one ' &
-                    // 'row for each ' // trim(axes(2)) // ', or for each pair of an ' &
-                    // trim(axes(1)) // ' and a ' // trim(axes(2)))
-            end if
-        end subroutine refuse_nodes
-
+        if (.not. sound) return
+        call fill_map(read_in, axes, names, map, sound)
+        if (.not. sound) call refuse_nodes(file, group, key, axes)
     end subroutine read_map
+
+    subroutine refuse_nodes(file, group, key, axes)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        character(len=*), intent(in) :: axes(2)
+
+        if (axes(1) == '') then
+            call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
+        else
+            call file%reject(group, key, 'its file must have each node of a grid once: one row ' &
+                // 'for each ' // trim(axes(2)) // ', or for each pair of an ' // trim(axes(1)) &
+                // ' and a ' // trim(axes(2)))
+        end if
+    end subroutine refuse_nodes
+
+    subroutine read_columns(file, group, key, axes, names, read_in, read_netcdf)
+        type(namelist_file), intent(inout) :: file
+        character(len=*), intent(in) :: group, key
+        character(len=*), intent(in) :: axes(2)
+        character(len=*), intent(in) :: names(:)
+        type(csv), intent(out) :: read_in
+        procedure(table_reader), optional :: read_netcdf
+        type(column_request) :: requests(size(names) + 2)
+        character(len=:), allocatable :: name
+        integer :: first, i
+
+        call file%get_text(group, key, name)
+        if (len(name) == 0) return
+        if (name(1:1) == '@') name = name(2:)
+        if (len(name) == 0) then
+            call file%reject(group, key, 'must name a file')
+            return
+        end if
+        requests(1)%name = trim(axes(1))
+        requests(2)%name = trim(axes(2))
+        do i = 1, size(names)
+            requests(2 + i)%name = trim(names(i))
+        end do
+        first = merge(2, 1, axes(1) == '')
+        if (.not. is_netcdf(name)) then
+            call read_table(file%beside(name), requests(first:), read_in)
+        else if (present(read_netcdf)) then
+            call read_netcdf(file%beside(name), requests(first:), read_in)
+        else
+            call file%reject(group, key, 'is a NetCDF file, which the fault engine alone reads')
+            return
+        end if
+        call refuse_table(file, group, key, read_in)
+    end subroutine read_columns
+
+    !> Places along an axis that a file has; 0 if it does not have the axis.
+    pure function nodes_in(read_in, axis) result(nodes)
+        type(csv), intent(in) :: read_in
+        character(len=*), intent(in) :: axis
+        real(dp), allocatable :: nodes(:)
+
+        nodes = [0.0_dp]
+        if (read_in%column(trim(axis)) > 0) nodes = joined([real(dp) ::], &
+            read_in%numbers(trim(axis)))
+    end function nodes_in
+
+    subroutine fill_map(read_in, axes, names, map, whole)
+        type(csv), intent(in) :: read_in
+        character(len=*), intent(in) :: axes(2)
+        character(len=*), intent(in) :: names(:)
+        type(map_on_grid), intent(inout) :: map
+        logical, intent(out) :: whole   !! no node is missing because another stands twice
+        integer :: columns(size(names)), along(2), i, j, k, row
+
+        columns = [(read_in%column(trim(names(j))), j = 1, size(names))]
+        along = [(read_in%column(trim(axes(j))), j = 1, 2)]
+        allocate (map%values(size(names), size(map%x), size(map%z)), source=huge(1.0_dp))
+        i = 1
+        do row = 1, size(read_in%values, 2)
+            if (along(1) > 0) i = nodes_up_to(map%x, read_in%values(along(1), row))
+            k = nodes_up_to(map%z, read_in%values(along(2), row))
+            map%values(:, i, k) = read_in%values(columns, row)
+        end do
+        whole = all(map%values < huge(1.0_dp))
+    end subroutine fill_map
 
 end module profile_reader

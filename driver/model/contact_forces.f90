@@ -44,7 +44,8 @@ contains
         else
             do first = 1, size(dx), part
                 last = min(first + part - 1, size(dx))
-                call forces_on_part(first, last, part_status)
+                call forces_on_part(system, old, normal, dx, dt, first, last, new, force, &
+                    stiffness, part_status)
                 if (part_status /= friction_ok) status = part_status
                 if (status < 0) return
             end do
@@ -69,53 +70,55 @@ contains
             stiffness(i) = system%area * tangent(2, 2)
         end subroutine force_on_one
 
-        !> The same for blocks `first` to `last`, a part that stays in cache: what the friction
-        !> routine needs and leaves beside the forces never gets to memory. In three dimensions and
-        !> from a cache line on, because the batch routine then works where the numbers are,
-        !> otherwise on copies.
-        subroutine forces_on_part(first, last, part_status)
-            integer, intent(in) :: first, last
-            integer, intent(out) :: part_status
-            integer, parameter :: line = 8   ! numbers of a cache line
-            real(dp) :: du(last - first + 1, 3), statev(last - first + 1, statev_size), &
-                traction(last - first + 1, 3)
-            real(dp), target :: room(9 * (last - first + 1) + line - 1)
-            real(dp), pointer, contiguous :: tangent(:, :, :)
-            integer :: statuses(last - first + 1), n, skipped, k
-
-            n = last - first + 1
-            skipped = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
-            tangent(1:n, 1:3, 1:3) => room(skipped + 1:skipped + 9 * n)
-            if (allocated(system%constants)) then
-                du(:, 1) = -normal / system%constants(first:last, prop_alpha_n)
-            else
-                du(:, 1) = -normal / system%props(prop_alpha_n)
-            end if
-            if (allocated(system%load)) du(:, 1) = du(:, 1) * system%load(first:last)
-            du(:, 1) = du(:, 1) - old(first:last, statev_u_n)
-            du(:, 2) = dx(first:last)
-            du(:, 3) = 0.0_dp
-            do k = 1, statev_size
-                statev(:, k) = old(first:last, k)
-            end do
-            if (allocated(system%constants)) then
-                call friction_update_batch(du, dt, system%constants(first:last, :), statev, &
-                    traction, tangent, statuses)
-            else
-                call friction_update_batch(du, dt, system%props, statev, traction, tangent, &
-                    statuses)
-            end if
-            part_status = minval(statuses)
-            if (part_status < 0) return
-            part_status = maxval(statuses)
-            do k = 1, statev_size
-                new(first:last, k) = statev(:, k)
-            end do
-            force(first:last) = system%area * traction(:, 2)
-            stiffness(first:last) = system%area * tangent(:, 2, 2)
-        end subroutine forces_on_part
-
     end subroutine friction_forces
+
+    !> The same for blocks `first` to `last`, a part that stays in cache: what the friction routine
+    !> needs and leaves beside the forces never gets to memory. In three dimensions and from a cache
+    !> line on, because the batch routine then works where the numbers are, otherwise on copies.
+    subroutine forces_on_part(system, old, normal, dx, dt, first, last, new, force, stiffness, &
+        status)
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: old(:, :), normal, dx(:), dt
+        integer, intent(in) :: first, last
+        real(dp), intent(inout) :: new(:, :), force(:), stiffness(:)
+        integer, intent(out) :: status
+        integer, parameter :: line = 8   ! numbers of a cache line
+        real(dp) :: du(last - first + 1, 3), statev(last - first + 1, statev_size), &
+            traction(last - first + 1, 3)
+        real(dp), target :: room(9 * (last - first + 1) + line - 1)
+        real(dp), pointer, contiguous :: tangent(:, :, :)
+        integer :: statuses(last - first + 1), n, skipped, k
+
+        n = last - first + 1
+        skipped = int(modulo(-transfer(c_loc(room), 0_c_intptr_t) / 8, int(line, c_intptr_t)))
+        tangent(1:n, 1:3, 1:3) => room(skipped + 1:skipped + 9 * n)
+        if (allocated(system%constants)) then
+            du(:, 1) = -normal / system%constants(first:last, prop_alpha_n)
+        else
+            du(:, 1) = -normal / system%props(prop_alpha_n)
+        end if
+        if (allocated(system%load)) du(:, 1) = du(:, 1) * system%load(first:last)
+        du(:, 1) = du(:, 1) - old(first:last, statev_u_n)
+        du(:, 2) = dx(first:last)
+        du(:, 3) = 0.0_dp
+        do k = 1, statev_size
+            statev(:, k) = old(first:last, k)
+        end do
+        if (allocated(system%constants)) then
+            call friction_update_batch(du, dt, system%constants(first:last, :), statev, traction, &
+                tangent, statuses)
+        else
+            call friction_update_batch(du, dt, system%props, statev, traction, tangent, statuses)
+        end if
+        status = minval(statuses)
+        if (status < 0) return
+        status = maxval(statuses)
+        do k = 1, statev_size
+            new(first:last, k) = statev(:, k)
+        end do
+        force(first:last) = system%area * traction(:, 2)
+        stiffness(first:last) = system%area * tangent(:, 2, 2)
+    end subroutine forces_on_part
 
     !> A sudden change of the normal traction, at one moment of time. A loaded contact whose
     !> friction depends on the slip rate needs time for it: there the next step has to press it.

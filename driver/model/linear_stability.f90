@@ -221,7 +221,7 @@ contains
 
     !> The rate equations in small disturbances d. Forces and velocities along the interface count
     !> in the sense of the slip.
-    subroutine rates_of(this, contact, d, rates, failed)
+    pure subroutine rates_of(this, contact, d, rates, failed)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         type(disturbance), intent(in) :: d
@@ -251,7 +251,7 @@ contains
     end subroutine rates_of
 
     !> Velocity of the block, slip rate and traction.
-    subroutine contact_motion(this, contact, d, pull, pressure, drift, motion, failed)
+    pure subroutine contact_motion(this, contact, d, pull, pressure, drift, motion, failed)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         type(disturbance), intent(in) :: d
@@ -275,7 +275,7 @@ contains
                 slip = v
                 traction = contact%by_rate * slip + at_rest
             else if (contact%damper > 0.0_dp) then
-                call damped_motion()
+                call damped_motion(this, contact, d%traction, pull, at_rest, v, slip, failed)
                 traction = contact%by_rate * slip + at_rest
             else if (depends_on_rate(contact)) then
                 traction = d%traction
@@ -298,28 +298,33 @@ contains
             end if
         end associate
         motion = [v, slip, traction]
-
-    contains
-
-        !> Velocity and slip rate of a contact with a damper beside its spring.
-        subroutine damped_motion()
-            real(dp) :: part, drag
-
-            slip = 0.0_dp
-            both = contact%damper + contact%by_rate
-            failed = .not. abs(both) > 0.0_dp
-            if (failed) return
-            part = contact%by_rate / both
-            if (.not. this%mass > 0.0_dp) then
-                drag = this%damping + this%area * part * contact%damper
-                failed = .not. abs(drag) > 0.0_dp
-                if (failed) return
-                v = (pull - this%area * (part * (d%traction - at_rest) + at_rest)) / drag
-            end if
-            slip = (d%traction + contact%damper * v - at_rest) / both
-        end subroutine damped_motion
-
     end subroutine contact_motion
+
+    !> Velocity and slip rate of a contact with a damper beside its spring.
+    pure subroutine damped_motion(this, contact, sprung, pull, at_rest, v, slip, failed)
+        type(sliding_case), intent(in) :: this
+        type(contact_response), intent(in) :: contact
+        real(dp), intent(in) :: sprung    !! traction of the spring [F/L^2]
+        real(dp), intent(in) :: pull      !! of the drive spring [F]
+        real(dp), intent(in) :: at_rest   !! traction without slip [F/L^2]
+        real(dp), intent(inout) :: v      !! known for a block with a mass [L/T]
+        real(dp), intent(out) :: slip     !! slip rate [L/T]
+        logical, intent(out) :: failed    !! no velocity follows
+        real(dp) :: both, part, drag
+
+        slip = 0.0_dp
+        both = contact%damper + contact%by_rate
+        failed = .not. abs(both) > 0.0_dp
+        if (failed) return
+        part = contact%by_rate / both
+        if (.not. this%mass > 0.0_dp) then
+            drag = this%damping + this%area * part * contact%damper
+            failed = .not. abs(drag) > 0.0_dp
+            if (failed) return
+            v = (pull - this%area * (part * (sprung - at_rest) + at_rest)) / drag
+        end if
+        slip = (sprung + contact%damper * v - at_rest) / both
+    end subroutine damped_motion
 
     !> Eigenvalues, the largest real part first. Each is improved by its two eigenvectors: what is
     !> left of round-off is that of the matrix entry by entry, however far its numbers are apart.
@@ -395,14 +400,7 @@ contains
 
         allocate (found(0))
         before = this%value_of(key)
-        growth%this => this
-        growth%key = key
-        growth%result => result
-        growth%by_verdict = .true.
-        call analyse(this, result)
-        growth%same_contact = len(result%problem) == 0 .and. .not. this%across%free() .and. &
-            any(key == [character(len=16) :: 'slider%mass', 'slider%stiffness', 'slider%damping', &
-            'slider%area'])
+        call prepare_growth(growth, this, key, result)
         x = 0.0_dp
         sides = 0.0_dp   ! the first place has none before it
         do i = 0, steps
@@ -414,6 +412,23 @@ contains
         end do
         call this%set(key, before)
     end subroutine find_critical
+
+    !> Growth that is taken by its verdict alone.
+    subroutine prepare_growth(growth, this, key, result)
+        type(growth_over), intent(out) :: growth
+        type(sliding_case), target, intent(in) :: this
+        character(len=*), intent(in) :: key
+        type(stability), target, intent(inout) :: result
+
+        growth%this => this
+        growth%key = key
+        growth%result => result
+        growth%by_verdict = .true.
+        growth%same_contact = .not. this%across%free() .and. any(key == [character(len=16) :: &
+            'slider%mass', 'slider%stiffness', 'slider%damping', 'slider%area'])
+        call analyse(this, result)
+        if (len(result%problem) > 0) growth%same_contact = .false.
+    end subroutine prepare_growth
 
     !> Where the growth changes its sign or, if on one side nothing grows or dies away, where the
     !> verdict changes.

@@ -13,10 +13,19 @@ module progress_observer
         type(progress) :: bar
         real(dp) :: t_end = 0.0_dp   !! [T]
     contains
-        procedure :: see, finish
+        procedure :: prepare, see, finish
     end type progress_watch
 
 contains
+
+    subroutine prepare(self, wanted, now, t_end)
+        class(progress_watch), intent(inout) :: self
+        logical, intent(in) :: wanted
+        real(dp), intent(in) :: now, t_end   !! [T]
+
+        self%t_end = t_end
+        call self%bar%begin(wanted, now / t_end)
+    end subroutine prepare
 
     subroutine see(self, old, new, news)
         class(progress_watch), intent(inout) :: self

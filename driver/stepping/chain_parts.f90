@@ -106,8 +106,8 @@ contains
         if (size(old%x) > most_at_once) this%margin = margin_of(self, system, dt)
         if (this%margin <= widest_margin) then
             this%parts = (size(old%x) - 1) / (width - 2 * this%margin) + 1
-            call solve_parts()
-            if (report%status >= 0) solved = seams_hold()
+            call solve_parts(self, system, this, old, new, report, guess)
+            if (report%status >= 0) solved = seams_hold(self, system, this, new)
             if (solved) then
                 self%split = self%split + 1
                 self%parts = this%parts
@@ -117,93 +117,6 @@ contains
         end if
         call self%newmark%step(system, drive, normal, dt, old, new, report, guess)
         report%iterations = report%iterations + iterations
-
-    contains
-
-        !> Every part by itself: the result does not depend on how many threads there are.
-        subroutine solve_parts()
-            integer :: threads, thread, i
-
-            threads = 1
-            !$ threads = max(1, min(omp_get_max_threads(), this%parts / parts_of_thread))
-            call prepare_workspaces(threads)
-            !$omp parallel do num_threads(threads) schedule(static) private(thread)
-            do i = 1, this%parts
-                thread = 1
-                !$ thread = omp_get_thread_num() + 1
-                call solve_part(self%workspaces(thread), i, system, this, old, new, &
-                    self%reports(i), guess)
-            end do
-            !$omp end parallel do
-            new%time = old%time + this%dt
-            new%drive = this%drive
-            new%normal = this%normal
-            report%status = minval(self%reports(:this%parts)%step%status)
-            if (report%status >= 0) report%status = maxval(self%reports(:this%parts)%step%status)
-            report%iterations = maxval(self%reports(:this%parts)%step%iterations)
-            report%stiffness = maxval(self%reports(:this%parts)%step%stiffness)
-            report%scale = maxval(self%reports(:this%parts)%step%scale)
-        end subroutine solve_parts
-
-        !> Makes room for every thread and every part.
-        subroutine prepare_workspaces(threads)
-            integer, intent(in) :: threads
-            integer :: i
-
-            if (allocated(self%reports)) then
-                if (size(self%reports) < this%parts) deallocate (self%reports)
-            end if
-            if (.not. allocated(self%reports)) allocate (self%reports(this%parts))
-            if (allocated(self%workspaces)) then
-                if (size(self%workspaces) >= threads) return
-                deallocate (self%workspaces)
-            end if
-            allocate (self%workspaces(threads))
-            do i = 1, threads
-                associate (w => self%workspaces(i))
-                    call w%method%set_as(self%newmark)
-                    w%system = slider(system%mass, system%stiffness, system%damping, system%area, &
-                        system%props, system%coupling)
-                    if (allocated(system%load)) allocate (w%system%load(width))
-                    if (allocated(system%constants)) allocate (w%system%constants(width, &
-                        size(system%constants, 2)))
-                    allocate (w%guess(width))
-                    call make_room(w%old)
-                    call make_room(w%new)
-                end associate
-            end do
-        end subroutine prepare_workspaces
-
-        !> Have neighbouring parts found the same displacements at their seam, but for a force that
-        !> is a tenth of the residual that is tolerated, or but for round-off?
-        pure function seams_hold() result(yes)
-            logical :: yes
-            real(dp), parameter :: share = 0.1_dp
-            real(dp) :: apart, largest
-            integer :: i, first, last, start, n, before, after
-
-            n = size(new%x)
-            yes = .true.
-            do i = 1, this%parts
-                call place_part(this, system%ends == ends_periodic, n, i, first, last, start)
-                before = first - 1
-                after = last + 1
-                if (system%ends == ends_periodic) then
-                    before = modulo(before - 1, n) + 1
-                    after = modulo(after - 1, n) + 1
-                end if
-                associate (r => self%reports(i))
-                    apart = 0.0_dp
-                    if (before >= 1) apart = abs(new%x(before) - r%beyond(1))
-                    if (after <= n) apart = max(apart, abs(new%x(after) - r%beyond(2)))
-                    largest = max(abs(new%x(first)), abs(new%x(last)))
-                    yes = system%coupling * apart <= share * self%tolerance * r%step%scale &
-                        .or. apart <= 2.0_dp * epsilon(apart) * largest
-                end associate
-                if (.not. yes) return
-            end do
-        end function seams_hold
-
     end subroutine step
 
     !> Part after part, so that they do not depend on how many threads there were.
@@ -251,6 +164,69 @@ contains
         end if
     end function margin_of
 
+    !> Every part by itself: the result does not depend on how many threads there are.
+    subroutine solve_parts(self, system, this, old, new, report, guess)
+        class(parted_chain), intent(inout) :: self
+        type(slider), intent(in) :: system
+        type(chain_step), intent(in) :: this
+        type(slider_state), intent(in) :: old
+        type(slider_state), intent(inout) :: new
+        type(step_report), intent(out) :: report
+        real(dp), intent(in), optional :: guess(:)
+        integer :: threads, thread, i
+
+        threads = 1
+        !$ threads = max(1, min(omp_get_max_threads(), this%parts / parts_of_thread))
+        call prepare_workspaces(self, threads, this%parts, system)
+        !$omp parallel do num_threads(threads) schedule(static) private(thread)
+        do i = 1, this%parts
+            thread = 1
+            !$ thread = omp_get_thread_num() + 1
+            call solve_part(self%workspaces(thread), i, system, this, old, new, self%reports(i), &
+                guess)
+        end do
+        !$omp end parallel do
+        new%time = old%time + this%dt
+        new%drive = this%drive
+        new%normal = this%normal
+        report%status = minval(self%reports(:this%parts)%step%status)
+        if (report%status >= 0) report%status = maxval(self%reports(:this%parts)%step%status)
+        report%iterations = maxval(self%reports(:this%parts)%step%iterations)
+        report%stiffness = maxval(self%reports(:this%parts)%step%stiffness)
+        report%scale = maxval(self%reports(:this%parts)%step%scale)
+    end subroutine solve_parts
+
+    !> Makes room for every thread and every part.
+    subroutine prepare_workspaces(self, threads, parts, system)
+        class(parted_chain), intent(inout) :: self
+        integer, intent(in) :: threads, parts
+        type(slider), intent(in) :: system
+        integer :: i
+
+        if (allocated(self%reports)) then
+            if (size(self%reports) < parts) deallocate (self%reports)
+        end if
+        if (.not. allocated(self%reports)) allocate (self%reports(parts))
+        if (allocated(self%workspaces)) then
+            if (size(self%workspaces) >= threads) return
+            deallocate (self%workspaces)
+        end if
+        allocate (self%workspaces(threads))
+        do i = 1, threads
+            associate (w => self%workspaces(i))
+                call w%method%set_as(self%newmark)
+                w%system = slider(system%mass, system%stiffness, system%damping, system%area, &
+                    system%props, system%coupling)
+                if (allocated(system%load)) allocate (w%system%load(width))
+                if (allocated(system%constants)) allocate (w%system%constants(width, &
+                    size(system%constants, 2)))
+                allocate (w%guess(width))
+                call make_room(w%old)
+                call make_room(w%new)
+            end associate
+        end do
+    end subroutine prepare_workspaces
+
     pure subroutine make_room(state)
         type(slider_state), intent(inout) :: state
 
@@ -287,13 +263,8 @@ contains
 
         n = size(old%x)
         call place_part(this, system%ends == ends_periodic, n, i, first, last, start)
-        call fetch_window()
-        w%system%ends = ends_fixed
-        w%system%walls = [wall(start - 1), wall(start + width)]   ! beside what is in cache now
-        if (system%ends == ends_free) then
-            if (start == 1) w%system%ends = ends_free_fixed
-            if (start + width - 1 == n) w%system%ends = ends_fixed_free
-        end if
+        call fetch_window(w, system, this, old, start, guess)
+        call put_walls(w, system, this, old, start, guess)   ! beside what is in cache now
         call w%method%step(w%system, this%drive, this%normal, this%dt, w%old, w%new, report%step, &
             w%guess)
         if (report%step%status < 0) return
@@ -309,38 +280,28 @@ contains
             call sum_blocks(w%system, w%old, w%new, a, b, report%sums)
             report%beyond = [w%new%x(max(1, a - 1)), w%new%x(min(width, b + 1))]
         end associate
+    end subroutine solve_part
+
+    !> Walls where the blocks before and after the window are expected, or at the ends of the chain
+    !> what there is.
+    subroutine put_walls(w, system, this, old, start, guess)
+        type(part_workspace), intent(inout) :: w
+        type(slider), intent(in) :: system
+        type(chain_step), intent(in) :: this
+        type(slider_state), intent(in) :: old
+        integer, intent(in) :: start
+        real(dp), intent(in), optional :: guess(:)
+        integer :: n
+
+        n = size(old%x)
+        w%system%ends = ends_fixed
+        w%system%walls = [wall(start - 1), wall(start + width)]
+        if (system%ends /= ends_free) return
+        if (start == 1) w%system%ends = ends_free_fixed
+        if (start + width - 1 == n) w%system%ends = ends_fixed_free
 
     contains
 
-        !> The old state of the window's blocks.
-        subroutine fetch_window()
-            w%old%time = old%time
-            w%old%drive = old%drive
-            w%old%normal = old%normal
-            call fetch(old%x, start, w%old%x)
-            call fetch(old%v, start, w%old%v)
-            call fetch(old%a, start, w%old%a)
-            call fetch(old%spring, start, w%old%spring)
-            if (abs(w%method%alpha_f) > 0.0_dp .or. abs(w%method%alpha_m) > 0.0_dp) call fetch( &
-                old%friction, start, w%old%friction)   ! Newmark's method does not need it
-            do k = 1, size(old%statev, 2)
-                call fetch(old%statev(:, k), start, w%old%statev(:, k))
-            end do
-            if (allocated(system%load)) call fetch(system%load, start, w%system%load)
-            if (allocated(system%constants)) then
-                do k = 1, size(system%constants, 2)
-                    call fetch(system%constants(:, k), start, w%system%constants(:, k))
-                end do
-            end if
-            if (present(guess)) then
-                call fetch(guess, start, w%guess)
-            else
-                w%guess = expected(w%old%x, w%old%v, w%old%a, this%dt)
-            end if
-        end subroutine fetch_window
-
-        !> Where the block before or after the window is expected, or at an end of the chain what
-        !> there is.
         pure function wall(block) result(x)
             integer, intent(in) :: block   !! beyond an end of an open chain: the wall there
             real(dp) :: x
@@ -359,7 +320,7 @@ contains
             end if
         end function wall
 
-    end subroutine solve_part
+    end subroutine put_walls
 
     !> Where a block will be.
     elemental function expected(x, v, a, dt) result(then)
@@ -368,6 +329,41 @@ contains
 
         then = x + (dt * v + 0.5_dp * dt**2 * a)
     end function expected
+
+    !> The old state of the window's blocks.
+    subroutine fetch_window(w, system, this, old, start, guess)
+        type(part_workspace), intent(inout) :: w
+        type(slider), intent(in) :: system
+        type(chain_step), intent(in) :: this
+        type(slider_state), intent(in) :: old
+        integer, intent(in) :: start
+        real(dp), intent(in), optional :: guess(:)
+        integer :: k
+
+        w%old%time = old%time
+        w%old%drive = old%drive
+        w%old%normal = old%normal
+        call fetch(old%x, start, w%old%x)
+        call fetch(old%v, start, w%old%v)
+        call fetch(old%a, start, w%old%a)
+        call fetch(old%spring, start, w%old%spring)
+        if (abs(w%method%alpha_f) > 0.0_dp .or. abs(w%method%alpha_m) > 0.0_dp) call fetch( &
+            old%friction, start, w%old%friction)   ! Newmark's method does not need it
+        do k = 1, size(old%statev, 2)
+            call fetch(old%statev(:, k), start, w%old%statev(:, k))
+        end do
+        if (allocated(system%load)) call fetch(system%load, start, w%system%load)
+        if (allocated(system%constants)) then
+            do k = 1, size(system%constants, 2)
+                call fetch(system%constants(:, k), start, w%system%constants(:, k))
+            end do
+        end if
+        if (present(guess)) then
+            call fetch(guess, start, w%guess)
+        else
+            w%guess = expected(w%old%x, w%old%v, w%old%a, this%dt)
+        end if
+    end subroutine fetch_window
 
     pure subroutine fetch(from, start, to)
         real(dp), intent(in), contiguous :: from(:)
@@ -384,5 +380,39 @@ contains
             end do
         end if
     end subroutine fetch
+
+    !> Have neighbouring parts found the same displacements at their seam, but for a force that is a
+    !> tenth of the residual that is tolerated, or but for round-off?
+    pure function seams_hold(self, system, this, new) result(yes)
+        class(parted_chain), intent(in) :: self
+        type(slider), intent(in) :: system
+        type(chain_step), intent(in) :: this
+        type(slider_state), intent(in) :: new
+        logical :: yes
+        real(dp), parameter :: share = 0.1_dp
+        real(dp) :: apart, largest
+        integer :: i, first, last, start, n, before, after
+
+        n = size(new%x)
+        yes = .true.
+        do i = 1, this%parts
+            call place_part(this, system%ends == ends_periodic, n, i, first, last, start)
+            before = first - 1
+            after = last + 1
+            if (system%ends == ends_periodic) then
+                before = modulo(before - 1, n) + 1
+                after = modulo(after - 1, n) + 1
+            end if
+            associate (r => self%reports(i))
+                apart = 0.0_dp
+                if (before >= 1) apart = abs(new%x(before) - r%beyond(1))
+                if (after <= n) apart = max(apart, abs(new%x(after) - r%beyond(2)))
+                largest = max(abs(new%x(first)), abs(new%x(last)))
+                yes = system%coupling * apart <= share * self%tolerance * r%step%scale &
+                    .or. apart <= 2.0_dp * epsilon(apart) * largest
+            end associate
+            if (.not. yes) return
+        end do
+    end function seams_hold
 
 end module chain_parts

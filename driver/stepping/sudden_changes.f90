@@ -102,152 +102,164 @@ contains
             if (closed .and. eq%phase /= phase_open) then
                 if (eq%across%free()) return   ! it comes with the motion
                 if (abs(pressure - state%normal) <= 1.0e-14_dp * pressure) return
-                call jump_to()
+                call jump_to(block, system, pressure, time_lost, state)
             else if (closed) then
                 eq%phase = phase_at_rest(eq)
                 touches = eq%phase == phase_slide .and. eq%surface%traits%memory == 1
-                call open_or_touch()
+                call open_or_touch(block, pressure, touches)
             else if (eq%phase /= phase_open) then
                 eq%phase = phase_open
-                call open_or_touch()
+                call open_or_touch(block, pressure, touches)
             end if
         end associate
-
-    contains
-
-        !> A normal traction that jumps on a closed contact.
-        subroutine jump_to()
-            logical :: taken
-
-            associate (eq => block%equations)
-                call press(max(state%normal, eq%least_pressure), max(pressure, eq%least_pressure))
-                if (eq%follows_share()) call slide_on(block, state%normal)
-                call load_springs(eq, taken)
-                block%known = .false.
-                if (eq%damper > 0.0_dp) return
-                if (eq%phase == phase_capped) eq%phase = phase_slide
-                if (eq%rigid) then
-                    call hold_velocity(block, pressure)
-                    return
-                end if
-                eq%phase = phase_at_rest(eq)
-                if (taken) then
-                    call block%synchronise(state)
-                else if (eq%surface%traits%stiff) then
-                    call creep_at_once(block, state%time, time_lost)
-                end if
-            end associate
-        end subroutine jump_to
-
-        !> What the law remembers may depend on the pressure. What of it comes back in a time that
-        !> no step can follow, comes back at once.
-        subroutine press(before, after)
-            real(dp), intent(in) :: before, after   !! pressure [F/L^2]
-            type(law_state) :: later, healing
-
-            associate (eq => block%equations)
-                if (.not. eq%surface%traits%logarithmic) return
-                later = eq%surface%law%pressed(eq%law_state_of(block%y, before), before, after)
-                if (later%r < time_lost) then
-                    healing = eq%surface%state_rates(later, load_rates(0.0_dp, 0.0_dp, eq%alpha, &
-                        after, 0.0_dp, .false.), 0.0_dp)
-                    later%r = later%r + time_lost * healing%r
-                end if
-                block%y(memory) = log(later%r)
-            end associate
-        end subroutine press
-
-        !> The springs under a normal traction that jumps. A block without mass and damper goes
-        !> along: to friction its drive spring and its contact spring are one then.
-        subroutine load_springs(eq, taken)
-            type(slider_equations), intent(in) :: eq
-            logical, intent(out) :: taken   !! or else left to the rates
-            type(slider) :: springs
-            real(dp) :: part   !! of the contact spring's stiffness that both have [-]
-
-            part = 1.0_dp
-            if (.not. (eq%rigid .or. eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
-                part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
-            end if
-            springs = system
-            springs%props(prop_alpha_t) = part * springs%props(prop_alpha_t)
-            if (allocated(springs%constants)) springs%constants(1, prop_alpha_t) = part &
-                * springs%constants(1, prop_alpha_t)
-            state%statev(1, statev_u_et) = state%statev(1, statev_u_et) / part
-            if (eq%surface%traits%memory == 1 .and. pressure < state%normal) then
-                call relieve(springs, taken)
-            else
-                call apply_normal_traction(springs, pressure, state, taken)
-            end if
-            state%statev(1, statev_u_et) = part * state%statev(1, statev_u_et)
-            if (.not. (taken .and. part < 1.0_dp)) return
-            state%spring = state%friction
-            state%x = state%drive - state%spring / eq%stiffness
-        end subroutine load_springs
-
-        !> A normal traction that falls at once on a surface which slides meanwhile: what the update
-        !> tends to in ever smaller parts of the fall, extrapolated (Richardson) from 1, 2, 4, ...
-        !> of them, because in one part it is of first order in the slip.
-        subroutine relieve(springs, taken)
-            type(slider), intent(in) :: springs
-            logical, intent(out) :: taken
-            integer, parameter :: most_halvings = 12
-            real(dp), parameter :: close = 1.0e-13_dp   !! of the displacements
-            type(slider_state) :: start, fallen
-            real(dp) :: old(statev_size), new(statev_size), guess(statev_size, 0:most_halvings)
-            real(dp), allocatable :: props(:)
-            integer :: halvings, i
-
-            start = state
-            old = 0.0_dp
-            do halvings = 0, most_halvings
-                fallen = start
-                do i = 1, 2**halvings
-                    call apply_normal_traction(springs, start%normal + (pressure - start%normal) &
-                        * (real(i, dp) / 2**halvings), fallen, taken)
-                    if (.not. taken) return
-                end do
-                new = fallen%statev(1, :)
-                do i = 0, halvings - 1   ! Neville's scheme for an error in powers of the part
-                    associate (coarser => guess(:, i))
-                        old = coarser
-                        coarser = new
-                        new = new + (new - old) / (2.0_dp**(i + 1) - 1.0_dp)
-                    end associate
-                end do
-                guess(:, halvings) = new
-                if (halvings > 0 .and. abs(new(statev_u_et) - old(statev_u_et)) <= close &
-                    * abs(start%statev(1, statev_u_et))) exit
-            end do
-            state = fallen
-            state%statev(1, :) = new
-            state%statev(1, [statev_status, statev_u_n]) = fallen%statev(1, [statev_status, &
-                statev_u_n])
-            props = springs%props_of(1)
-            state%friction = springs%area * props(prop_alpha_t) * new(statev_u_et)
-            call set_accelerations(springs, state)
-        end subroutine relieve
-
-        !> A contact that is in its new phase carries nothing at first.
-        subroutine open_or_touch()
-            real(dp), parameter :: first_ratio = 1.0e-12_dp   !! R as surfaces meet
-
-            associate (eq => block%equations, y => block%y)
-                if (eq%rigid .and. eq%phase == phase_stick .and. abs(y(velocity)) > 0.0_dp) then
-                    eq%phase = phase_slide
-                    eq%sense = eq%sense_of(y(velocity))
-                end if
-                y(ratio) = 0.0_dp
-                y(elastic) = 0.0_dp
-                if (touches) y(elastic) = eq%sense_of(y(velocity)) * first_ratio &
-                    * eq%full_strength(y, pressure) / eq%alpha
-                if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) y(extension) = 0.0_dp
-                call hold_velocity(block, pressure)
-                block%known = .false.
-            end associate
-        end subroutine open_or_touch
-
     end subroutine take_load
+
+    !> A normal traction that jumps on a closed contact.
+    subroutine jump_to(block, system, pressure, time_lost, state)
+        type(moving_block), intent(inout) :: block
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: pressure    !! after it [F/L^2]
+        real(dp), intent(in) :: time_lost   !! in round-off [T]
+        type(slider_state), intent(inout) :: state
+        logical :: taken
+
+        associate (eq => block%equations)
+            call press(block, max(state%normal, eq%least_pressure), max(pressure, &
+                eq%least_pressure), time_lost)
+            if (eq%follows_share()) call slide_on(block, state%normal)
+            call load_springs(eq, system, pressure, state, taken)
+            block%known = .false.
+            if (eq%damper > 0.0_dp) return
+            if (eq%phase == phase_capped) eq%phase = phase_slide
+            if (eq%rigid) then
+                call hold_velocity(block, pressure)
+                return
+            end if
+            eq%phase = phase_at_rest(eq)
+            if (taken) then
+                call block%synchronise(state)
+            else if (eq%surface%traits%stiff) then
+                call creep_at_once(block, state%time, time_lost)
+            end if
+        end associate
+    end subroutine jump_to
+
+    !> The springs under a normal traction that jumps. A block without mass and damper goes along:
+    !> to friction its drive spring and its contact spring are one then.
+    subroutine load_springs(eq, system, pressure, state, taken)
+        type(slider_equations), intent(in) :: eq
+        type(slider), intent(in) :: system
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken      !! or else left to the rates
+        type(slider) :: springs
+        real(dp) :: part   !! of the contact spring's stiffness that both have [-]
+
+        part = 1.0_dp
+        if (.not. (eq%rigid .or. eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
+            part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
+        end if
+        springs = system
+        springs%props(prop_alpha_t) = part * springs%props(prop_alpha_t)
+        if (allocated(springs%constants)) springs%constants(1, prop_alpha_t) = part &
+            * springs%constants(1, prop_alpha_t)
+        state%statev(1, statev_u_et) = state%statev(1, statev_u_et) / part
+        if (eq%surface%traits%memory == 1 .and. pressure < state%normal) then
+            call relieve(springs, pressure, state, taken)
+        else
+            call apply_normal_traction(springs, pressure, state, taken)
+        end if
+        state%statev(1, statev_u_et) = part * state%statev(1, statev_u_et)
+        if (.not. (taken .and. part < 1.0_dp)) return
+        state%spring = state%friction
+        state%x = state%drive - state%spring / eq%stiffness
+    end subroutine load_springs
+
+    !> A normal traction that falls at once on a surface which slides meanwhile: what the update
+    !> tends to in ever smaller parts of the fall, extrapolated (Richardson) from 1, 2, 4, ... of
+    !> them, because in one part it is of first order in the slip.
+    subroutine relieve(springs, pressure, state, taken)
+        type(slider), intent(in) :: springs
+        real(dp), intent(in) :: pressure   !! afterwards [F/L^2]
+        type(slider_state), intent(inout) :: state
+        logical, intent(out) :: taken
+        integer, parameter :: most_halvings = 12
+        real(dp), parameter :: close = 1.0e-13_dp   !! of the displacements
+        type(slider_state) :: start, fallen
+        real(dp) :: old(statev_size), new(statev_size), guess(statev_size, 0:most_halvings)
+        real(dp), allocatable :: props(:)
+        integer :: halvings, i
+
+        start = state
+        old = 0.0_dp
+        do halvings = 0, most_halvings
+            fallen = start
+            do i = 1, 2**halvings
+                call apply_normal_traction(springs, start%normal + (pressure - start%normal) &
+                    * (real(i, dp) / 2**halvings), fallen, taken)
+                if (.not. taken) return
+            end do
+            new = fallen%statev(1, :)
+            do i = 0, halvings - 1   ! Neville's scheme for an error in powers of the part
+                associate (coarser => guess(:, i))
+                    old = coarser
+                    coarser = new
+                    new = new + (new - old) / (2.0_dp**(i + 1) - 1.0_dp)
+                end associate
+            end do
+            guess(:, halvings) = new
+            if (halvings > 0 .and. abs(new(statev_u_et) - old(statev_u_et)) <= close &
+                * abs(start%statev(1, statev_u_et))) exit
+        end do
+        state = fallen
+        state%statev(1, :) = new
+        state%statev(1, [statev_status, statev_u_n]) = fallen%statev(1, [statev_status, statev_u_n])
+        props = springs%props_of(1)
+        state%friction = springs%area * props(prop_alpha_t) * new(statev_u_et)
+        call set_accelerations(springs, state)
+    end subroutine relieve
+
+    !> A contact that is in its new phase carries nothing at first.
+    subroutine open_or_touch(block, pressure, touches)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        logical, intent(in) :: touches     !! as a subloading surface
+        real(dp), parameter :: first_ratio = 1.0e-12_dp   !! R as surfaces meet
+
+        associate (eq => block%equations, y => block%y)
+            if (eq%rigid .and. eq%phase == phase_stick .and. abs(y(velocity)) > 0.0_dp) then
+                eq%phase = phase_slide
+                eq%sense = eq%sense_of(y(velocity))
+            end if
+            y(ratio) = 0.0_dp
+            y(elastic) = 0.0_dp
+            if (touches) y(elastic) = eq%sense_of(y(velocity)) * first_ratio &
+                * eq%full_strength(y, pressure) / eq%alpha
+            if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) y(extension) = 0.0_dp
+            call hold_velocity(block, pressure)
+            block%known = .false.
+        end associate
+    end subroutine open_or_touch
+
+    !> What the law remembers may depend on the pressure. What of it comes back in a time that no
+    !> step can follow, comes back at once.
+    subroutine press(block, before, after, time_lost)
+        type(moving_block), intent(inout) :: block
+        real(dp), intent(in) :: before, after   !! pressure [F/L^2]
+        real(dp), intent(in) :: time_lost       !! [T]
+        type(law_state) :: state, healing
+
+        associate (eq => block%equations)
+            if (.not. eq%surface%traits%logarithmic) return
+            state = eq%surface%law%pressed(eq%law_state_of(block%y, before), before, after)
+            if (state%r < time_lost) then
+                healing = eq%surface%state_rates(state, load_rates(0.0_dp, 0.0_dp, eq%alpha, &
+                    after, 0.0_dp, .false.), 0.0_dp)
+                state%r = state%r + time_lost * healing%r
+            end if
+            block%y(memory) = log(state%r)
+        end associate
+    end subroutine press
 
     !> A creeping contact that is relieved may slip far in a time that is lost in round-off. It is
     !> followed over its slip then, in steps in which the slip rate falls by less than a half.

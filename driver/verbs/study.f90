@@ -69,73 +69,88 @@ contains
         end if
 
         call watch_for_interrupts()
-        call watched_run()
+        call watched_run(wanted, base, run, live, records, result)
         if (.not. wanted%quiet) call print_summary(run, result, base // '.csv')
         call print_warnings(wanted%input, run, result)
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
-        if (wanted%verify .and. len(result%failure) == 0) call verify_events()
-        if (len(result%failure) > 0) call tell_failure(wanted%input, result%failure, base)
-        exit_status = merge(exit_failed, exit_done, len(result%failure) > 0)
-        if (wanted%plot .and. .not. result%interrupted) call draw_pictures()
-
-    contains
-
-        !> Simulates with all that watches: files, checkpoints, the progress bar.
-        subroutine watched_run()
-            type(checkpoint_writer), target :: checkpoints
-            type(progress_watch), target :: bar
-            type(observer_slot) :: observers(3)
-
-            checkpoints%name = base // '.checkpoint'
-            checkpoints%run => run
-            checkpoints%live => live
-            checkpoints%records => records
-            checkpoints%last = seconds()
-            bar%t_end = run%t_end
-            call bar%bar%begin(.not. wanted%quiet, live%state%time / run%t_end)
-            observers(1)%it => records
-            observers(2)%it => bar
-            observers(3)%it => checkpoints
-            call simulate(live, observers, result)
-            call write_pieces(base // '_pieces.csv', run, result, written)
-            if (.not. written .and. len(result%failure) == 0) result%failure = &
-                'at its end: cannot write the table of pieces (disk full?)'
-        end subroutine watched_run
-
-        subroutine draw_pictures()
-            call draw_run(run, wanted%output, wanted%stem, records%picture_file(), problem)
-            if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(run, &
-                wanted%output, wanted%stem, problem)
-            if (len(problem) == 0 .and. run%fields > 0) call draw_fields(run, wanted%output, &
-                wanted%stem, problem)
-            if (len(problem) == 0 .and. size(block_columns(run)) > 0) call draw_blocks(run, &
-                wanted%output, wanted%stem, problem)
-            if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
-        end subroutine draw_pictures
-
-        !> A second run, at a tenth of the tolerance or half of the step, that leaves no files: how
-        !> far its events are from those of the first is about the error of these.
-        subroutine verify_events()
-            type(settings) :: tighter
-            type(outcome) :: reference
-            type(simulation_run) :: second
-            type(observer_slot) :: no_observers(0)
-
-            tighter = run
-            if (run%adaptive) then
-                tighter%rtol = 0.1_dp * run%rtol
-            else
-                tighter%dt = 0.5_dp * run%dt
-            end if
-            call start_run(tighter, second)
-            call simulate(second, no_observers, reference)
-            if (len(reference%failure) > 0) then
-                write (error_unit, '(2a)') 'stickslip: the tighter run failed ', reference%failure
-            else
-                call print_event_times(result%onsets, reference%onsets)
-            end if
-        end subroutine verify_events
-
+        if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
+        exit_status = exit_done
+        if (len(result%failure) > 0) then
+            call tell_failure(wanted%input, result%failure, base)
+            exit_status = exit_failed
+        end if
+        if (wanted%plot .and. .not. result%interrupted) call draw_pictures(wanted, run, &
+            records%picture_file(), result)
     end subroutine run_input
+
+    !> Simulates with all that watches: files, checkpoints, the progress bar.
+    subroutine watched_run(wanted, base, run, live, records, result)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        type(settings), target, intent(inout) :: run
+        type(simulation_run), target, intent(inout) :: live
+        type(csv_recorder), target, intent(inout) :: records
+        type(outcome), intent(out) :: result
+        type(checkpoint_writer), target :: checkpoints
+        type(progress_watch), target :: bar
+        type(observer_slot) :: observers(3)
+        logical :: written
+
+        checkpoints%name = base // '.checkpoint'
+        checkpoints%run => run
+        checkpoints%live => live
+        checkpoints%records => records
+        checkpoints%last = seconds()
+        call bar%prepare(.not. wanted%quiet, live%state%time, run%t_end)
+        observers(1)%it => records
+        observers(2)%it => bar
+        observers(3)%it => checkpoints
+        call simulate(live, observers, result)
+        call write_pieces(base // '_pieces.csv', run, result, written)
+        if (.not. written .and. len(result%failure) == 0) result%failure = &
+            'at its end: cannot write the table of pieces (disk full?)'
+    end subroutine watched_run
+
+    subroutine draw_pictures(wanted, run, file, result)
+        type(command), intent(in) :: wanted
+        type(settings), intent(in) :: run
+        character(len=*), intent(in) :: file   !! with the time series
+        type(outcome), intent(in) :: result
+        character(len=:), allocatable :: problem
+
+        call draw_run(run, wanted%output, wanted%stem, file, problem)
+        if (len(problem) == 0 .and. result%chain_events > 0) call draw_catalogue(run, &
+            wanted%output, wanted%stem, problem)
+        if (len(problem) == 0 .and. run%fields > 0) call draw_fields(run, wanted%output, &
+            wanted%stem, problem)
+        if (len(problem) == 0 .and. size(block_columns(run)) > 0) call draw_blocks(run, &
+            wanted%output, wanted%stem, problem)
+        if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
+    end subroutine draw_pictures
+
+    !> A second run, at a tenth of the tolerance or half of the step, that leaves no files: how far
+    !> its events are from those of the first is about the error of these.
+    subroutine verify_events(run, result)
+        type(settings), intent(in) :: run
+        type(outcome), intent(in) :: result
+        type(settings) :: tighter
+        type(outcome) :: reference
+        type(simulation_run) :: live
+        type(observer_slot) :: no_observers(0)
+
+        tighter = run
+        if (run%adaptive) then
+            tighter%rtol = 0.1_dp * run%rtol
+        else
+            tighter%dt = 0.5_dp * run%dt
+        end if
+        call start_run(tighter, live)
+        call simulate(live, no_observers, reference)
+        if (len(reference%failure) > 0) then
+            write (error_unit, '(2a)') 'stickslip: the tighter run failed ', reference%failure
+        else
+            call print_event_times(result%onsets, reference%onsets)
+        end if
+    end subroutine verify_events
 
 end module study

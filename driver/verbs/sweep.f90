@@ -46,10 +46,10 @@ contains
         type(namelist_file) :: file
         type(sweep_plan) :: plan
         type(journal) :: done
-        type(line_text), allocatable :: rows(:)   !! one a combination, empty if not run
+        type(line_text), allocatable :: rows(:)
         character(len=:), allocatable :: base, problem
         logical, allocatable :: mine(:)   !! the combinations of this part of the sweep
-        integer :: found, failures, i
+        integer :: found, failures
 
         exit_status = exit_bad_input
         if (.not. is_for('sweep', wanted%input, file)) return
@@ -57,131 +57,31 @@ contains
         if (has_faults(file)) return
         if (.not. directory_is_ready(wanted%output, wanted%stem, file)) return
         base = wanted%output // '/' // wanted%stem // '_sweep'
-        call open_journal()
+        call open_journal(wanted, base, plan, done, rows, problem)
         if (len(problem) > 0) then
             write (error_unit, '(2a)') 'stickslip: ', problem
             return
         end if
         if (wanted%parts == 1) call remove_results(wanted%output // '/' // &
             wanted%stem, of_sweep)
-        ! another one of every n each time: the parts of a map take about the same time, as many as
-        ! its columns, too
-        mine = [(modulo(i + i / wanted%parts, wanted%parts) == wanted%part - 1, i = 0, &
-            size(rows) - 1)]
+        mine = is_mine(wanted, size(rows))
         found = count_rows(pack(rows, mine))
         call run_all(plan, wanted, mine, done, rows, problem)
-        if (len(problem) == 0 .and. wanted%parts == 1) call write_table()
-        if (done%file%failed) problem = 'cannot write ' // journal_name() // ' (disk full?)'
+        if (len(problem) == 0 .and. wanted%parts == 1) call write_table(base, plan, rows, problem)
+        if (done%file%failed) problem = 'cannot write ' // journal_name(wanted, base) &
+            // ' (disk full?)'
         call done%file%finish()
-        failures = count_rows_with('failed,')
-        if (.not. wanted%quiet .and. len(problem) == 0) call print_summary()
+        failures = count_rows_with(plan, rows, 'failed,', mine)
+        if (.not. wanted%quiet .and. len(problem) == 0) call print_summary(wanted, base, &
+            count(mine), found, failures)
         exit_status = merge(exit_failed, exit_done, failures > 0 .or. len(problem) > 0)
         if (failures > 0) write (error_unit, '(3a, i0, a, i0, 2a)') 'stickslip: ', wanted%input, &
             ': ', failures, ' of ', count(mine), ' combinations failed; why is in ', &
-            results_name()
+            results_name(wanted, base)
         if (len(problem) == 0 .and. wanted%plot .and. wanted%parts == 1) call draw_sweep(plan, &
-            wanted%output, wanted%stem // '_sweep', count_rows_with('ok,stick-slip,'), problem)
+            wanted%output, wanted%stem // '_sweep', &
+            count_rows_with(plan, rows, 'ok,stick-slip,', mine), problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem
-
-    contains
-
-        !> Finds the combinations whose rows are in the journals of an earlier sweep and its parts.
-        subroutine open_journal()
-            type(line_text), allocatable :: known(:)
-            character(len=:), allocatable :: input
-            integer :: i
-
-            allocate (rows(size(plan%runs)))
-            do i = 1, size(rows)
-                rows(i)%text = ''
-            end do
-            input = 'stickslip ' // friction_version // new_line('a') // table_header(plan%axes) &
-                // new_line('a') // plan%input
-            call read_rows(base // '.journal', input, known, problem)
-            if (len(problem) > 0) return
-            call take_rows(known)
-            do i = 1, size(rows)   ! parts of a higher number have no combination
-                call read_rows(part_journal(i), input, known, problem)
-                if (len(problem) > 0) return
-                call take_rows(known)
-            end do
-            call done%open(journal_name(), input, known, problem)
-        end subroutine open_journal
-
-        subroutine take_rows(known)
-            type(line_text), intent(in) :: known(:)
-            integer :: i, j
-
-            if (size(known) == 0) return
-            do i = 1, size(rows)
-                do j = 1, size(known)
-                    if (index(known(j)%text, point_text(plan%point(i))) == 1) rows(i) = known(j)
-                end do
-            end do
-        end subroutine take_rows
-
-        !> The table replaces an older one whole or not at all.
-        subroutine write_table()
-            type(output_file) :: table
-            integer :: i
-
-            call table%create(base // '.csv.new')
-            call table%write_line(table_header(plan%axes))
-            do i = 1, size(rows)
-                call table%write_line(rows(i)%text)
-            end do
-            call table%finish()
-            if (.not. table%failed) then
-                if (rename_file(base // '.csv.new', base // '.csv')) return
-            end if
-            problem = 'cannot write ' // base // '.csv (disk full?)'
-        end subroutine write_table
-
-        !> Combinations among `mine` whose results start with a text.
-        pure function count_rows_with(start) result(n)
-            character(len=*), intent(in) :: start
-            integer :: n, i
-
-            n = 0
-            do i = 1, size(rows)
-                if (.not. mine(i)) cycle
-                if (index(rows(i)%text, point_text(plan%point(i)) // start) == 1) n = n + 1
-            end do
-        end function count_rows_with
-
-        subroutine print_summary()
-            if (wanted%parts > 1) write (report, '(2(a, i0))') 'part               ', wanted%part, &
-                ' of ', wanted%parts
-            write (report, '(a, 3(i0, a))') 'combinations       ', count(mine), ': ', &
-                count(mine) - found, ' run now, ', found, ' taken from the journal'
-            write (report, '(a, i0)') 'failed             ', failures
-            write (report, '(2a)') merge('rows               ', 'table              ', &
-                wanted%parts > 1), results_name()
-        end subroutine print_summary
-
-        !> Where the rows are when all is done.
-        function results_name() result(name)
-            character(len=:), allocatable :: name
-
-            name = base // '.csv'
-            if (wanted%parts > 1) name = journal_name()
-        end function results_name
-
-        !> Each part of a sweep keeps a journal of its own: files of a cluster cannot be shared.
-        function journal_name() result(name)
-            character(len=:), allocatable :: name
-
-            name = base // '.journal'
-            if (wanted%parts > 1) name = part_journal(wanted%part)
-        end function journal_name
-
-        function part_journal(part) result(name)
-            integer, intent(in) :: part
-            character(len=:), allocatable :: name
-
-            name = base // '_part_' // whole_text(part) // '.journal'
-        end function part_journal
-
     end subroutine sweep_input
 
     !> All combinations, as a sweep runs them; every fault is left in `file%faults`.
@@ -198,6 +98,89 @@ contains
             plan%runs(i)%every = 0.0_dp
         end do
     end subroutine read_plan
+
+    !> One of every n combinations, another one each time: the parts of a map take about the same
+    !> time, as many as its columns, too.
+    pure function is_mine(wanted, combinations) result(mine)
+        type(command), intent(in) :: wanted
+        integer, intent(in) :: combinations
+        logical :: mine(combinations)
+        integer :: i
+
+        mine = [(modulo(i + i / wanted%parts, wanted%parts) == wanted%part - 1, &
+            i = 0, combinations - 1)]
+    end function is_mine
+
+    !> Each part of a sweep keeps a journal of its own: files of a cluster cannot be shared.
+    pure function journal_name(wanted, base) result(name)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        character(len=:), allocatable :: name
+
+        name = base // '.journal'
+        if (wanted%parts > 1) name = part_journal(base, wanted%part)
+    end function journal_name
+
+    pure function part_journal(base, part) result(name)
+        character(len=*), intent(in) :: base
+        integer, intent(in) :: part
+        character(len=:), allocatable :: name
+
+        name = base // '_part_' // whole_text(part) // '.journal'
+    end function part_journal
+
+    !> Where the rows are when all is done.
+    pure function results_name(wanted, base) result(name)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        character(len=:), allocatable :: name
+
+        name = base // '.csv'
+        if (wanted%parts > 1) name = journal_name(wanted, base)
+    end function results_name
+
+    !> Finds the combinations whose rows are in the journals of an earlier sweep and of its parts.
+    subroutine open_journal(wanted, base, plan, done, rows, problem)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        type(sweep_plan), intent(in) :: plan
+        type(journal), intent(inout) :: done
+        type(line_text), allocatable, intent(out) :: rows(:)  !! one a combination, empty if not run
+        character(len=:), allocatable, intent(out) :: problem
+        type(line_text), allocatable :: known(:)
+        character(len=:), allocatable :: input
+        integer :: i
+
+        allocate (rows(size(plan%runs)))
+        do i = 1, size(rows)
+            rows(i)%text = ''
+        end do
+        input = 'stickslip ' // friction_version // new_line('a') // table_header(plan%axes) &
+            // new_line('a') // plan%input
+        call read_rows(base // '.journal', input, known, problem)
+        if (len(problem) > 0) return
+        call take_rows(plan, known, rows)
+        do i = 1, size(rows)   ! parts of a higher number have no combination
+            call read_rows(part_journal(base, i), input, known, problem)
+            if (len(problem) > 0) return
+            call take_rows(plan, known, rows)
+        end do
+        call done%open(journal_name(wanted, base), input, known, problem)
+    end subroutine open_journal
+
+    subroutine take_rows(plan, known, rows)
+        type(sweep_plan), intent(in) :: plan
+        type(line_text), intent(in) :: known(:)
+        type(line_text), intent(inout) :: rows(:)
+        integer :: i, j
+
+        if (size(known) == 0) return
+        do i = 1, size(rows)
+            do j = 1, size(known)
+                if (index(known(j)%text, point_text(plan%point(i))) == 1) rows(i) = known(j)
+            end do
+        end do
+    end subroutine take_rows
 
     !> Runs the combinations that have no row, each in a process of its own. A row does not depend
     !> on what runs beside it. Rows of runs that crashed stay out of the journal: they are tried
@@ -294,6 +277,28 @@ contains
         if (self%this%orphaned()) call news%stop_run('its sweep has ended')
     end subroutine look_for_parent
 
+    !> The table replaces an older one whole or not at all.
+    subroutine write_table(base, plan, rows, problem)
+        character(len=*), intent(in) :: base
+        type(sweep_plan), intent(in) :: plan
+        type(line_text), intent(in) :: rows(:)
+        character(len=:), allocatable, intent(out) :: problem
+        type(output_file) :: table
+        integer :: i
+
+        call table%create(base // '.csv.new')
+        call table%write_line(table_header(plan%axes))
+        do i = 1, size(rows)
+            call table%write_line(rows(i)%text)
+        end do
+        call table%finish()
+        problem = ''
+        if (.not. table%failed) then
+            if (rename_file(base // '.csv.new', base // '.csv')) return
+        end if
+        problem = 'cannot write ' // base // '.csv (disk full?)'
+    end subroutine write_table
+
     pure function count_rows(rows) result(n)
         type(line_text), intent(in) :: rows(:)
         integer :: n, i
@@ -303,5 +308,34 @@ contains
             if (len(rows(i)%text) > 0) n = n + 1
         end do
     end function count_rows
+
+    !> Combinations among `mine` whose results start with a text.
+    pure function count_rows_with(plan, rows, start, mine) result(n)
+        type(sweep_plan), intent(in) :: plan
+        type(line_text), intent(in) :: rows(:)
+        character(len=*), intent(in) :: start
+        logical, intent(in) :: mine(:)
+        integer :: n, i
+
+        n = 0
+        do i = 1, size(rows)
+            if (.not. mine(i)) cycle
+            if (index(rows(i)%text, point_text(plan%point(i)) // start) == 1) n = n + 1
+        end do
+    end function count_rows_with
+
+    subroutine print_summary(wanted, base, combinations, found, failures)
+        type(command), intent(in) :: wanted
+        character(len=*), intent(in) :: base
+        integer, intent(in) :: combinations, found, failures
+
+        if (wanted%parts > 1) write (report, '(2(a, i0))') 'part               ', wanted%part, &
+            ' of ', wanted%parts
+        write (report, '(a, 3(i0, a))') 'combinations       ', combinations, ': ', &
+            combinations - found, ' run now, ', found, ' taken from the journal'
+        write (report, '(a, i0)') 'failed             ', failures
+        write (report, '(2a)') merge('rows               ', 'table              ', &
+            wanted%parts > 1), results_name(wanted, base)
+    end subroutine print_summary
 
 end module sweep
