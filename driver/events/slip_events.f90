@@ -31,6 +31,7 @@ module slip_events
     !> Rise after a fall that ends it: `drop`, but at least and at most these parts of the fall.
     real(dp), parameter :: least_rise = 0.05_dp, most_rise = 0.2_dp
     real(dp), parameter :: round_off = 1.0e-3_dp   !! part of the slack that is no way back
+    real(dp), parameter :: mostly = 0.5_dp         !! part of the block's way in a fall that is slip
 
     !> What the finder looks at in one instant.
     type :: moment
@@ -265,7 +266,9 @@ contains
         self%current%force_drop = self%peak%force - end%force
         self%current%slip = end%slip - self%peak%slip
         self%current%peak_velocity = self%fastest
-        self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit(self)
+        self%is_event = self%current%force_drop > self%drop .and. self%slipping > limit(self) &
+            .and. self%current%slip >= mostly * (end%drive - self%peak%drive &
+            + self%current%force_drop / self%stiffness)
     end subroutine follow_fall
 
     !> When slip becomes slow: by the mean slip rates of a fast step and of the next one, which is

@@ -18,6 +18,8 @@ module slip_observer
     public :: slip_watch
 
     real(dp), parameter :: round_off = 1.0e-6_dp   !! of times, as a part of a step
+    real(dp), parameter :: thin = 1.0e-3_dp        !! part of the largest normal traction of a piece
+                                                   !! below which friction over it tells nothing
 
     type, extends(observer) :: slip_watch
         type(programme) :: drive
@@ -28,6 +30,7 @@ module slip_observer
         type(event_totals), allocatable :: pieces(:)
         type(friction_range), allocatable :: friction(:)   !! in the pieces
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
+        real(dp), allocatable :: least_load(:)         !! normal traction that tells friction there
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -54,7 +57,23 @@ contains
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
         self%sense = senses(run%drive, run%loading_sense())
+        ! the friction force has the error of a step, part of what the largest load makes of it
+        self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
+
+    !> The largest normal traction of each piece.
+    pure function largest_loads(drive) result(loads)
+        type(programme), intent(in) :: drive
+        real(dp) :: loads(drive%listed)   !! [F/L^2]
+        integer :: i
+
+        loads = drive%normal(:drive%listed)
+        do i = 1, min(drive%listed, size(drive%start) - 1)
+            loads(i) = max(loads(i), loads(i) + drive%normal_rate(i) * (drive%start(i + 1) &
+                - drive%start(i)))
+        end do
+        loads = loads + drive%amplitude
+    end function largest_loads
 
     !> In a hold the sense is that of the piece before.
     pure function senses(drive, first) result(list)
@@ -101,10 +120,10 @@ contains
         integer :: i
         logical :: turns
 
-        if (new%normal <= 0.0_dp) return
         aside = round_off * (new%time - old%time)
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
-        if (.not. self%friction(i)%seen .and. old%normal > 0.0_dp .and. old%time > &
+        if (new%normal <= self%least_load(i)) return
+        if (.not. self%friction(i)%seen .and. old%normal > self%least_load(i) .and. old%time > &
             self%drive%start(i) - aside) then
             if (is_gradual(self%drive, i)) call self%friction(i)%take(over_load(old))
         end if

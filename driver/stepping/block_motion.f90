@@ -7,7 +7,8 @@ module block_motion
     use law_facts, only : typical_strength
     use run_settings, only : settings
     use slider_rates, only : along, away, controlled, damped, dissipated, drive_work, elastic, &
-        extension, memory, phase_open, place, ratio, slider_equations, slip, unknowns, velocity
+        extension, memory, phase_open, phase_stick, place, ratio, slider_equations, slip, &
+        unknowns, velocity
     use slider_system, only : slider_state
     implicit none
     private
@@ -145,12 +146,13 @@ contains
         y(dissipated) = max(y(dissipated), old%statev(i, statev_dissipation))
         new%x(i) = new%drive - y(extension)
         new%spring(i) = eq%pull(y)
-        traction = eq%traction(t, y)
-        new%friction(i) = eq%area * traction
-        new%v(i) = y(velocity)
-        new%a(i) = dy(velocity)
         pressure = merge(0.0_dp, max(normal, eq%least_pressure), eq%phase == phase_open)
         state = eq%law_state_of(y, pressure)
+        new%v(i) = y(velocity)
+        new%a(i) = dy(velocity)
+        traction = eq%traction(t, y)
+        call let_go(eq, y, pressure, traction, new%a(i))
+        new%friction(i) = eq%area * traction
         new%statev(i, statev_status) = 3.0_dp
         if (eq%phase /= phase_open) new%statev(i, statev_status) = merge(2.0_dp, 1.0_dp, &
             dy(slip) > 0.0_dp)
@@ -160,6 +162,22 @@ contains
         new%statev(i, statev_slip) = y(slip)
         new%statev(i, statev_dissipation) = y(dissipated)
     end subroutine fill_block
+
+    !> A block without contact spring that has come to rest under more than it can hold slides back
+    !> at once, from the next step on.
+    pure subroutine let_go(eq, y, pressure, traction, acceleration)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: y(unknowns)
+        real(dp), intent(in) :: pressure          !! [F/L^2]
+        real(dp), intent(inout) :: traction       !! that holds it [F/L^2]
+        real(dp), intent(inout) :: acceleration   !! [L/T^2]
+        real(dp) :: held
+
+        if (.not. eq%rigid .or. eq%phase /= phase_stick) return
+        held = sign(min(abs(traction), eq%strength(y, pressure), eq%surface%tau_max), traction)
+        if (eq%mass > 0.0_dp) acceleration = acceleration + eq%area * (traction - held) / eq%mass
+        traction = held
+    end subroutine let_go
 
     !> Friction coefficient as `friction_update` has it: of a surface that sticks or is open that at
     !> rest, of one that creeps what it carries, under a cap what it would carry without.

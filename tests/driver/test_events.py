@@ -163,6 +163,15 @@ class Events(EventsOfRuns):
         crossings = sum(a < 10 <= b for a, b in zip(rates, rates[1:]))
         self.assertIn(crossings, (6, 7))
 
+    def test_a_contact_that_rings_and_hardly_slips_has_no_events_whatever_the_steps(self):
+        # 8 in steps that take its slips in one, 18 and 21 in shorter ones
+        for time in ('rtol=1e-4', 'rtol=1e-10', 'dt=2e-4'):
+            self.assertEqual(len(self.events(f"""&friction law='slip_weakening_healing', mu_s=0.3, mu_k=0.19, d_c=0.576, xi=1.22,
+                    alpha_n=1000, alpha_t=40 /
+                &slider mass=0.0025, stiffness=4, normal_traction=40 /
+                &drive velocity=1.5 /
+                &time t_end=10, {time} /""")), 8)
+
     def test_forced_changes_of_stable_sliding_are_no_events(self):
         hold = (RATE_AND_STATE.replace('=A', '=0.01').replace('=B', '=0.008').replace('THETA', '10.').replace('STIFFNESS', '1e-2')
                 + '&drive velocity=1, 0, 1, 0, 1, 10, 1, duration=100, 10, 100, 100, 100, 100, 100 /'
@@ -323,6 +332,17 @@ class Pieces(Program):
             self.assertAlmostEqual(piece['least_friction'], least, delta=1e-12)
             self.assertAlmostEqual(piece['peak_friction'], peak, delta=1e-12)
         self.assertAlmostEqual(pieces[1]['direct_effect'], 0.2, delta=1e-12)
+
+    def test_friction_is_not_told_where_the_normal_traction_vanishes(self):
+        # where it is as small as the error of the friction force: 262 and 327 at these tolerances
+        for rtol in ('1e-3', '1e-5', '1e-7'):
+            self.run_text(f"""&friction law='coulomb', mu=0.35, alpha_n=1000, alpha_t=200 /
+                &slider mass=1e-4, stiffness=4, normal_traction=3 /
+                &drive velocity=2, 0.2, 0.1, duration=1, 0.1, 1, normal=3, 0, 1.5, normal_change='ramp' /
+                &time t_end=2.1, rtol={rtol} /""", '--no-plot')
+            for piece in self.rows('case_out/case_pieces.csv'):
+                for key in ('peak_friction', 'least_friction', 'last_friction'):
+                    self.assertLess(abs(float(piece[key])), 0.353)
 
     def test_events_are_booked_in_their_pieces_and_leave_no_steady_value(self):
         result = self.run_text((INPUTS / 'velocity_steps.nml').read_text(), '--no-plot')

@@ -370,6 +370,19 @@ class Phases(Program):
             &output every=15.180312967161193 /""")
         self.assertLess(abs(energies['unbalanced']), 1e-6 * energies['dissipated'])
 
+    def test_a_block_that_slides_back_from_a_turn_is_not_held_there_by_more_than_its_strength(self):
+        # rows at turns had the drive spring's force for friction, 20 times the strength, and no acceleration
+        for law in ("'coulomb', mu=0.1", "'static_kinetic', mu_s=0.1, mu_k=0.05, d_c=1", "'slip_weakening', mu_s=0.1, mu_k=0.05, d_c=0.1"):
+            rows, _ = self.table(f"""&friction law={law}, alpha_n=1, alpha_t=1, contact='rigid' /
+                &slider mass=1, damping=0.1, stiffness=100, normal_traction=1 /
+                &drive velocity=0 /
+                &initial spring_force=2 /
+                &time t_end=3, rtol=1e-6 /""")
+            self.assertGreater(sum(a['velocity'] * b['velocity'] <= 0 for a, b in zip(rows[1:], rows[2:])), 2)
+            for row in rows[1:]:
+                self.assertLess(abs(row['friction_force']), 0.1 * (1 + 1e-12))
+                self.assertAlmostEqual(row['acceleration'] + 0.1 * row['velocity'] + row['friction_force'], row['spring_force'], delta=1e-9)
+
     def test_the_friction_coefficient_is_that_of_fixed_steps_at_rest_and_open(self):
         for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
                     "d_c=1, xi=0.3", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1", "'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1, "
