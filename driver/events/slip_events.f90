@@ -64,6 +64,7 @@ module slip_events
         real(dp) :: slip_rate = 0.0_dp     !! that is fast [L/T]; 0: by the drive's speed
         real(dp) :: stiffness = 1.0_dp     !! of the drive spring [F/L]
         real(dp) :: impedance = 0.0_dp     !! force that gives the block a velocity [F T/L]
+        logical :: inertia = .false.       !! the block's velocity does not jump
         real(dp) :: speed = 0.0_dp         !! of the drive when it last moved [L/T]
         integer, private :: sense = 1      !! of the loading, 1 or -1
         logical, private :: started = .false.
@@ -86,7 +87,7 @@ module slip_events
         real(dp), private :: last_onset = 0.0_dp  !! of the event before [T]
     contains
         procedure :: follow, give_sense, visit
-        procedure, private :: look, start_at, conclude
+        procedure, private :: take, look, start_at, conclude
     end type event_finder
 
 contains
@@ -109,6 +110,65 @@ contains
         type(moment), intent(in) :: old, new   !! `new` is the `old` of the next step
         logical, intent(in) :: last            !! no step follows
         type(slip_event), allocatable, intent(inout) :: events(:)   !! they are added to these
+        integer, parameter :: parts = 4
+        type(moment) :: before, now
+        integer :: k
+
+        before = old
+        if (tells_more(self, old, new)) then
+            do k = 1, parts - 1
+                now = within(self, old, new, old%time + k * (new%time - old%time) / parts)
+                call self%take(before, now, .false., events)
+                before = now
+            end do
+        end if
+        call self%take(before, new, last, events)
+    end subroutine follow
+
+    !> Is slip in a step so fast, and does it change so much, that it counts when it is how fast?
+    pure function tells_more(self, old, new) result(yes)
+        class(event_finder), intent(in) :: self
+        type(moment), intent(in) :: old, new
+        logical :: yes
+        real(dp), parameter :: even = 0.02_dp   !! part of the velocity
+        real(dp) :: mean
+
+        yes = .false.
+        if (.not. self%inertia) return
+        ! a parabola that is not negative is three times its mean at most
+        if (3.0_dp * (new%slip - old%slip) <= limit(self) * (new%time - old%time)) return
+        mean = mean_velocity(self, old, new)
+        if (max(abs(old%velocity - mean), abs(new%velocity - mean)) <= even * abs(mean)) return
+        yes = goes_on(old, new, mean)
+    end function tells_more
+
+    !> Of the block between two moments [L/T].
+    pure function mean_velocity(self, a, b) result(v)
+        class(event_finder), intent(in) :: self
+        type(moment), intent(in) :: a, b
+        real(dp) :: v
+
+        v = (b%drive - a%drive - (b%force - a%force) / self%stiffness) / (b%time - a%time)
+    end function mean_velocity
+
+    !> Does a block whose place is a cubic of time move in one direction alone? Velocities at the
+    !> ends of long steps may be uncertain; such ones tell nothing.
+    pure function goes_on(a, b, mean) result(yes)
+        type(moment), intent(in) :: a, b
+        real(dp), intent(in) :: mean   !! velocity [L/T]
+        logical :: yes
+
+        yes = .false.
+        if (abs(mean) > 0.0_dp) yes = min(a%velocity / mean, b%velocity / mean) >= 0.0_dp .and. &
+            max(a%velocity / mean, b%velocity / mean) <= 3.0_dp
+    end function goes_on
+
+    !> Takes in a step or a part of one.
+    pure subroutine take(self, old, new, last, events)
+        class(event_finder), intent(inout) :: self
+        type(moment), intent(in) :: old, new
+        logical, intent(in) :: last
+        type(slip_event), allocatable, intent(inout) :: events(:)
         type(moment) :: before, now, turn
         real(dp) :: slip_rate, slack, release
         logical :: turns
@@ -136,6 +196,7 @@ contains
             self%reached = self%sense * new%drive
         else if (now%drive >= self%reached - round_off * slack) then
             call turning_point(before, now, turn, turns)
+            if (turns) turn = within(self, before, now, turn%time)
             if (turns) turns = beyond(before, now, turn) <= 2.0_dp * max(self%change, &
                 abs(now%force - before%force))
             if (turns .and. before%drive >= self%reached - round_off * slack) then
@@ -148,7 +209,7 @@ contains
         self%rate = slip_rate
         self%middle = 0.5_dp * (old%time + new%time)
         if (last .and. slip_rate <= limit(self)) call self%conclude(events)
-    end subroutine follow
+    end subroutine take
 
     !> Slip rate that an event must exceed [L/T].
     pure function limit(self) result(rate)
@@ -257,7 +318,7 @@ contains
         end = now
         latest = 2.0_dp * self%fast_until - self%peak%time
         if (now%time > latest .and. self%slipping > limit(self)) then
-            if (self%since%time < latest) end = between_moments(self%since, now, latest)
+            if (self%since%time < latest) end = within(self, self%since, now, latest)
             if (self%is_event .and. self%since%time >= latest) return
             if (.not. (self%is_event .or. self%peak%force - end%force > self%drop)) end = now
         end if
@@ -348,6 +409,26 @@ contains
         between = between_moments(a, b, a%time + s * dt)
         between%rate = 0.0_dp
     end subroutine turning_point
+
+    !> A moment within a step, whose slip is spread as the block's way is.
+    pure function within(self, a, b, time) result(between)
+        class(event_finder), intent(in) :: self
+        type(moment), intent(in) :: a, b
+        real(dp), intent(in) :: time   !! [T]
+        type(moment) :: between
+        real(dp) :: s, dt, mean, way
+
+        between = between_moments(a, b, time)
+        mean = mean_velocity(self, a, b)
+        if (.not. goes_on(a, b, mean)) return
+        dt = b%time - a%time
+        s = (time - a%time) / dt
+        way = between%drive - a%drive - (between%force - a%force) / self%stiffness
+        between%slip = a%slip + (b%slip - a%slip) * min(1.0_dp, max(0.0_dp, way / (mean * dt)))
+        between%velocity = between%velocity + 6.0_dp * s * (1.0_dp - s) * (mean &
+            - 0.5_dp * (a%velocity + b%velocity))
+        between%rate = self%stiffness * ((b%drive - a%drive) / dt - between%velocity)
+    end function within
 
     !> A moment between two others: the force by cubic interpolation.
     pure function between_moments(a, b, time) result(between)

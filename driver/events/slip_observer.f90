@@ -51,6 +51,7 @@ contains
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
         self%finder%impedance = max(run%damping, sqrt(run%stiffness * run%mass))
+        self%finder%inertia = run%mass > 0.0_dp
         law = friction_facts(run%props)
         self%coefficient = law%typical_coefficient
         call self%finder%give_sense(run%loading_sense(), abs(run%drive%first_velocity()))

@@ -64,6 +64,31 @@ class Events(EventsOfRuns):
                 &time t_end=2, {time} /""")
             self.assertAlmostEqual(event['duration'], 0.3791, delta=8e-4)
 
+    def test_slip_and_peak_velocity_are_found_within_steps_of_a_radian(self):
+        # a swing of D = 3 about friction: slips were up to 1.3 % off, peak velocities 7 %
+        velocity, stiffness, drop = 1, 4, 3
+        swing = math.hypot(drop, velocity * math.sqrt(stiffness))   # of the force, mass 1
+        for rtol in ('1e-3', '1e-4', '1e-5', '1e-6'):
+            event = self.events(f"""&friction law='coulomb', mu=0.3, alpha_n=1, alpha_t=1, contact='rigid' /
+                &slider mass=1, stiffness={stiffness}, normal_traction=20 /
+                &drive velocity={velocity} /
+                &initial spring_force={6 + drop} /
+                &time t_end=3, rtol={rtol} /""")[0]
+            self.assertAlmostEqual(event['duration'], math.pi / 2, delta=2e-3 * math.pi / 2)
+            self.assertAlmostEqual(event['stress_drop'], 2 * swing, delta=1e-3 * swing)
+            slip = velocity * math.pi / 2 + 2 * swing / stiffness
+            self.assertAlmostEqual(event['slip'], slip, delta=1e-3 * slip)
+            peak = velocity + swing / math.sqrt(stiffness)
+            self.assertAlmostEqual(event['peak_velocity'], peak, delta=5e-3 * peak)
+        # the fourth hardly exceeds 1.5 V, its mean slip rates in such steps do not
+        events = self.events("""&friction law='static_kinetic', mu_s=0.785, mu_k=0.32, d_c=0.65, alpha_n=1, alpha_t=1, contact='rigid', tau_max=17.85 /
+                &slider mass=1.25, stiffness=0.886, damping=0.061, normal_traction=31.3 /
+                &drive velocity=0.256 /
+                &time t_end=110, rtol=9e-6 /""")
+        self.assertEqual(len(events), 4)
+        for event in events:
+            self.assertAlmostEqual(event['duration'], math.pi * math.sqrt(1.25 / 0.886), delta=0.03)
+
     def test_a_block_pulled_the_other_way_has_the_same_events(self):
         for steps in ('dt=1e-3', 'rtol=1e-6'):
             tables = [self.events(BLOCK + f'&drive velocity={v} / &time t_end=30, {steps} /') for v in (1, -1)]
