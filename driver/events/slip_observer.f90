@@ -31,6 +31,7 @@ module slip_observer
         type(friction_range), allocatable :: friction(:)   !! in the pieces
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
         real(dp), allocatable :: least_load(:)         !! normal traction that tells friction there
+        logical :: prescribed = .true.                 !! the normal traction, not an answer
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -58,6 +59,7 @@ contains
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
         self%sense = senses(run%drive, run%loading_sense())
+        self%prescribed = .not. run%across%free()
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -112,25 +114,30 @@ contains
     end subroutine see
 
     !> A step belongs to the piece that it ends in, or that ends with it. The first one of a piece
-    !> gives it its start, too; but what friction is after a sudden load is seen at the step's end.
+    !> gives it its start, too; but what friction is after a sudden load is seen at the step's end,
+    !> unless nothing has slipped.
     pure subroutine measure(self, old, new, before, now)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(moment), intent(in) :: before, now   !! the same two
-        real(dp) :: aside, between
+        real(dp) :: aside, between, load
         integer :: i
         logical :: turns
 
         aside = round_off * (new%time - old%time)
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
         if (new%normal <= self%least_load(i)) return
-        if (.not. self%friction(i)%seen .and. old%normal > self%least_load(i) .and. old%time > &
-            self%drive%start(i) - aside) then
-            if (is_gradual(self%drive, i)) call self%friction(i)%take(over_load(old))
+        if (.not. self%friction(i)%seen .and. old%time > self%drive%start(i) - aside) then
+            load = old%normal
+            if (self%prescribed) load = self%drive%normal_traction(old%time, i)
+            if (load > self%least_load(i) .and. (is_gradual(self%drive, i) .or. .not. &
+                (self%prescribed .and. now%slip > before%slip))) then
+                call self%friction(i)%take(over_load(old, load))
+            end if
         end if
         call find_turn(between, turns)
         if (turns) call self%friction(i)%take(between)
-        call self%friction(i)%take(over_load(new))
+        call self%friction(i)%take(over_load(new, new%normal))
 
     contains
 
@@ -154,11 +161,12 @@ contains
                 - old%time) / (new%time - old%time)) / (self%area * new%normal)
         end subroutine find_turn
 
-        pure function over_load(state) result(friction)
+        pure function over_load(state, load) result(friction)
             type(slider_state), intent(in) :: state
-            real(dp) :: friction   !! [-]
+            real(dp), intent(in) :: load   !! normal traction [F/L^2]
+            real(dp) :: friction           !! [-]
 
-            friction = mean_of(state) / (self%area * state%normal)
+            friction = mean_of(state) / (self%area * load)
             if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
         end function over_load
 

@@ -121,8 +121,10 @@ contains
         real(dp), intent(in) :: pressure    !! after it [F/L^2]
         real(dp), intent(in) :: time_lost   !! in round-off [T]
         type(slider_state), intent(inout) :: state
+        real(dp) :: carried(size(state%friction))   ! [F]
         logical :: taken
 
+        carried = state%friction
         associate (eq => block%equations)
             call press(block, max(state%normal, eq%least_pressure), max(pressure, &
                 eq%least_pressure), time_lost)
@@ -132,6 +134,7 @@ contains
             if (eq%damper > 0.0_dp) return
             if (eq%phase == phase_capped) eq%phase = phase_slide
             if (eq%rigid) then
+                state%friction = carried   ! it has no spring to tell
                 call hold_velocity(block, pressure)
                 return
             end if
