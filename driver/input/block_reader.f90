@@ -187,7 +187,7 @@ contains
 
     !> Constants that are left out have their defaults block by block.
     subroutine fill_constants(file, profiles, table, scatter, run)
-        type(namelist_file), intent(in) :: file
+        type(namelist_file), intent(inout) :: file
         type(profile), intent(in) :: profiles(:)
         type(constant_table), intent(in) :: table
         real(dp), intent(in) :: scatter(:)

@@ -48,7 +48,7 @@ contains
 
     !> A factor needs its column.
     subroutine check_factors(file, group, names, table)
-        type(namelist_file), intent(in) :: file
+        type(namelist_file), intent(inout) :: file
         character(len=*), intent(in) :: group
         character(len=*), intent(in) :: names(:)
         type(csv), intent(inout) :: table

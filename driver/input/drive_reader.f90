@@ -166,7 +166,7 @@ contains
     end subroutine read_drive_file
 
     subroutine check_columns(file, rows)
-        type(namelist_file), intent(in) :: file
+        type(namelist_file), intent(inout) :: file
         type(table), intent(inout) :: rows
 
         if (rows%column('time') == 0) call rows%add_fault(rows%header_line, &

@@ -152,13 +152,14 @@ contains
         if (path(1:1) /= '/') full = self%name(:index(self%name, '/', back=.true.)) // path
     end function beside
 
-    !> Is the key in the file?
-    pure function given(self, group, key) result(found)
-        class(namelist_file), intent(in) :: self
+    !> Is the key in the file? Says that the program knows it.
+    function given(self, group, key) result(found)
+        class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
         logical :: found
         integer, allocatable :: mine(:)
 
+        call note(self, group, key)
         call find(self, group, key, mine)
         found = size(mine) > 0
     end function given
@@ -192,7 +193,6 @@ contains
         value = 0.0_dp
         if (present(default)) value = default
         if (.not. self%given(group, key)) then
-            call note(self, group, key)
             if (.not. present(default)) call self%require(group, key)
             return
         end if
@@ -471,8 +471,7 @@ contains
         end do
         if (self%n_keys == size(self%keys)) self%keys = [self%keys, self%keys]   ! room
         self%n_keys = self%n_keys + 1
-        self%keys(self%n_keys)%group = group
-        self%keys(self%n_keys)%key = key
+        self%keys(self%n_keys) = known_key(group, key)   ! without the hint of another
     end subroutine note
 
     !> What to say of a key if it is given where the program does not ask for it, such as `belongs
@@ -496,10 +495,10 @@ contains
         character(len=*), intent(in) :: group, key
         integer :: line
 
-        call note(self, group, key)
+        if (self%given(group, key)) return
         line = self%line_of_group(group)
-        if (line > 0 .and. .not. self%given(group, key)) call self%add_fault(line, '&' // group &
-            // ' ' // key // ': is missing and has no default')
+        if (line > 0) call self%add_fault(line, '&' // group // ' ' // key &
+            // ': is missing and has no default')
     end subroutine require
 
     !> Notes a fault for each of the groups that is missing.
@@ -519,7 +518,6 @@ contains
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key, why
 
-        call note(self, group, key)
         if (self%given(group, key)) call self%reject(group, key, why)
     end subroutine refuse
 

@@ -149,7 +149,7 @@ contains
     contains
 
         !> A column that is named is taken in place of its partner, `u_n` and `t_n` and so on.
-        pure logical function wanted(i)
+        logical function wanted(i)
             integer, intent(in) :: i
             integer :: partner
 
@@ -161,7 +161,7 @@ contains
     end subroutine read_file
 
     subroutine check_columns(file, ndir, table)
-        type(namelist_file), intent(in) :: file
+        type(namelist_file), intent(inout) :: file
         integer, intent(in) :: ndir
         type(csv), intent(inout) :: table
         character(len=:), allocatable :: pair

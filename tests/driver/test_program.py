@@ -342,6 +342,12 @@ class Laws(Program):
                      "&friction mu: unknown key; it belongs to the law 'coulomb'",
                      "&friction evolution: unknown key; it belongs to the law 'rate_and_state'")
         self.refused(namelist({('friction', 'kapa'): '0.3'}), "&friction kapa: unknown key; did you mean 'kappa'?")
+        # keys without a default, which are read only where they are given; the last two were beyond room for 32
+        for group, wrong, right in (('events', 'slip_rat', 'slip_rate'), ('slider', 'normal_mas', 'normal_mass'),
+                                    ('time', 'rho_infinit', 'rho_infinity'), ('drive', 'normal_amplitud', 'normal_amplitude'),
+                                    ('drive', 'velocity_colum', 'velocity_column'), ('output', 'evry', 'every'),
+                                    ('output', 'checkpont', 'checkpoint')):
+            self.refused(namelist({(group, wrong): '1'}), f"&{group} {wrong}: unknown key; did you mean '{right}'?")
 
     def test_a_key_is_told_of_a_law_only_in_the_group_of_the_law(self):
         for law in LAWS:
