@@ -178,8 +178,10 @@ contains
         ! a contact spring that lets go at once does not move the block
         slip_rate = min(new%slip - old%slip, max(0.0_dp, now%drive - before%drive - (now%force &
             - before%force) / self%stiffness)) / (new%time - old%time)
-        if (abs(new%drive - old%drive) > 0.0_dp) self%speed = abs(new%drive - old%drive) &
-            / (new%time - old%time)
+        ! a fixed step in which a hold begins has as much of the drive's speed as there was motion
+        if (abs(new%drive - old%drive) > 0.0_dp) self%speed = max(abs(new%drive - old%drive) &
+            / (new%time - old%time), min(self%speed, abs(old%velocity + old%rate &
+            / self%stiffness)))
         if (.not. self%started) then
             call self%start_at(before)
             self%reached = before%drive

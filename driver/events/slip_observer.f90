@@ -170,14 +170,14 @@ contains
             if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
         end function over_load
 
-        pure function mean_of(state) result(friction)
-            type(slider_state), intent(in) :: state
-            real(dp) :: friction   !! mean over the blocks [F]
-
-            friction = sum(state%friction) / size(state%friction)
-        end function mean_of
-
     end subroutine measure
+
+    pure function mean_of(state) result(friction)
+        type(slider_state), intent(in) :: state
+        real(dp) :: friction   !! mean over the blocks [F]
+
+        friction = sum(state%friction) / size(state%friction)
+    end function mean_of
 
     !> Does a piece start with the normal traction that the one before ends with?
     pure function is_gradual(drive, i) result(yes)

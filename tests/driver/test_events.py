@@ -171,6 +171,15 @@ class Events(EventsOfRuns):
 """
         self.assertEqual(self.events(text), [])
 
+    def test_a_hold_that_begins_within_a_fixed_step_makes_no_event(self):
+        # swings of 0.6 to 1.4 of the drive's speed: where its force rises the block is slower than that, but faster than the mean of such a step
+        for k in range(10):
+            self.assertEqual(self.events(f"""&friction law='coulomb', mu=0.46, alpha_n=1e3, alpha_t=424 /
+                &slider mass=2.8e-6, stiffness=4.25, area=0.464, normal_traction=1.9 /
+                &drive velocity=1, 0, duration={0.02003 + 5e-4 * k}, 1 /
+                &initial mu=0.46, velocity=0.6 /
+                &time t_end=0.04, dt=1e-4 /"""), [], k)
+
     def test_a_small_limit_cycle_has_an_event_a_cycle(self):
         # the force falls by less than 1 %, at slip rates of 0.12 to 99 times the drive's
         text = (RATE_AND_STATE.replace('=A', '=0.005').replace('=B', '=0.0055').replace('THETA', '12.')
