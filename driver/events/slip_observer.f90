@@ -3,7 +3,7 @@
 module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_facts, law_facts
+    use friction_mod, only : friction_facts, law_facts, onset_gradual, statev_mu
     use loading_programme, only : programme
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
@@ -24,6 +24,7 @@ module slip_observer
     type, extends(observer) :: slip_watch
         type(programme) :: drive
         real(dp) :: stiffness = 0.0_dp                 !! of the drive spring [F/L]
+        real(dp) :: damping = 0.0_dp                   !! of a block [F T/L]
         type(event_finder) :: finder
         real(dp) :: area = 1.0_dp                      !! contact area of a block [L^2]
         real(dp) :: coefficient = 0.0_dp               !! of static friction
@@ -32,6 +33,8 @@ module slip_observer
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
         real(dp), allocatable :: least_load(:)         !! normal traction that tells friction there
         logical :: prescribed = .true.                 !! the normal traction, not an answer
+        logical :: rigid = .false.                     !! no contact spring: slip stops at once
+        real(dp) :: cohesion = 0.0_dp, cap = 0.0_dp    !! of friction [F/L^2]
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -48,6 +51,7 @@ contains
 
         self%drive = run%drive
         self%stiffness = run%stiffness
+        self%damping = run%damping
         self%finder%drop = run%event_force()
         self%finder%slip_rate = run%event_slip_rate
         self%finder%stiffness = run%stiffness
@@ -60,6 +64,9 @@ contains
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
         self%sense = senses(run%drive, run%loading_sense())
         self%prescribed = .not. run%across%free()
+        self%rigid = run%rigid_contact .and. law%traits%onset /= onset_gradual
+        self%cohesion = law%cohesion
+        self%cap = law%shear_cap
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -108,6 +115,7 @@ contains
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))
             self%onsets = [self%onsets, news%slip_events(k)%onset]
+            self%peak_velocity = max(self%peak_velocity, news%slip_events(k)%peak_velocity)
         end do
         self%peak_velocity = max(self%peak_velocity, news%sums%fastest)
         if (self%drive%listed > 1) call self%measure(old, new, before, now)
@@ -115,62 +123,91 @@ contains
 
     !> A step belongs to the piece that it ends in, or that ends with it. The first one of a piece
     !> gives it its start, too; but what friction is after a sudden load is seen at the step's end,
-    !> unless nothing has slipped.
+    !> unless nothing has slipped. A block without contact spring slides against another force than
+    !> what held it before a sudden load, or holds it once it has come to rest.
     pure subroutine measure(self, old, new, before, now)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
         type(moment), intent(in) :: before, now   !! the same two
-        real(dp) :: aside, between, load
+        real(dp) :: aside, between, load, way
         integer :: i
-        logical :: turns
+        logical :: turns, slides
 
         aside = round_off * (new%time - old%time)
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
         if (new%normal <= self%least_load(i)) return
+        slides = now%slip > before%slip
+        way = new%x(1) - old%x(1)
         if (.not. self%friction(i)%seen .and. old%time > self%drive%start(i) - aside) then
             load = old%normal
             if (self%prescribed) load = self%drive%normal_traction(old%time, i)
-            if (load > self%least_load(i) .and. (is_gradual(self%drive, i) .or. .not. &
-                (self%prescribed .and. now%slip > before%slip))) then
-                call self%friction(i)%take(over_load(old, load))
+            if (load > self%least_load(i)) then
+                if (is_gradual(self%drive, i) .or. .not. (self%prescribed .and. slides)) then
+                    call self%friction(i)%take(over_load(self, i, mean_of(old), load))
+                else if (self%rigid .and. old%normal > 0.0_dp) then
+                    call self%friction(i)%take(over_load(self, i, sliding(self, old, load, way), &
+                        load))
+                end if
             end if
         end if
-        call find_turn(between, turns)
+        call find_turn(self, i, old, new, before, now, between, turns)
         if (turns) call self%friction(i)%take(between)
-        call self%friction(i)%take(over_load(new, new%normal))
-
-    contains
-
-        !> Where the drive spring turns within the step, friction does, unless inertia or a damper
-        !> has a say in it.
-        pure subroutine find_turn(friction, found)
-            real(dp), intent(out) :: friction   !! there [-]
-            logical, intent(out) :: found
-            real(dp), parameter :: no_say = 0.5_dp   !! part of what the turn has beyond the ends
-            type(moment) :: turn
-            real(dp) :: rest(2)   ! of the spring's force [F]
-
-            friction = 0.0_dp
-            call turning_point(before, now, turn, found)
-            found = found .and. .not. abs(new%normal - old%normal) > 0.0_dp
-            if (.not. found) return
-            rest = [before%force - mean_of(old), now%force - mean_of(new)]
-            found = abs(rest(2) - rest(1)) <= no_say * min(abs(turn%force - before%force), &
-                abs(turn%force - now%force))
-            friction = self%sense(i) * (turn%force - rest(1) - (rest(2) - rest(1)) * (turn%time &
-                - old%time) / (new%time - old%time)) / (self%area * new%normal)
-        end subroutine find_turn
-
-        pure function over_load(state, load) result(friction)
-            type(slider_state), intent(in) :: state
-            real(dp), intent(in) :: load   !! normal traction [F/L^2]
-            real(dp) :: friction           !! [-]
-
-            friction = mean_of(state) / (self%area * load)
-            if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
-        end function over_load
-
+        if (self%rigid .and. slides .and. .not. abs(new%v(1)) > 0.0_dp) then
+            call self%friction(i)%take(over_load(self, i, sliding(self, new, new%normal, way), &
+                new%normal))
+        end if
+        call self%friction(i)%take(over_load(self, i, mean_of(new), new%normal))
     end subroutine measure
+
+    !> Where the drive spring turns within a step, friction does, unless inertia or a damper has a
+    !> say in it.
+    pure subroutine find_turn(self, i, old, new, before, now, friction, found)
+        class(slip_watch), intent(in) :: self
+        integer, intent(in) :: i                  !! piece
+        type(slider_state), intent(in) :: old, new
+        type(moment), intent(in) :: before, now   !! the same two
+        real(dp), intent(out) :: friction         !! there [-]
+        logical, intent(out) :: found
+        real(dp), parameter :: no_say = 0.5_dp   !! part of what the turn has beyond the ends
+        type(moment) :: turn
+        real(dp) :: rest(2), damped(2)   ! of the spring's force [F]
+
+        friction = 0.0_dp
+        call turning_point(before, now, turn, found)
+        found = found .and. .not. abs(new%normal - old%normal) > 0.0_dp
+        if (.not. found) return
+        rest = [before%force - mean_of(old), now%force - mean_of(new)]
+        ! a block that swings against steady friction has the same rest at two times about the turn
+        damped = self%damping * [before%velocity, now%velocity]
+        found = maxval(abs(rest - damped)) + abs(damped(2) - damped(1)) <= no_say &
+            * min(abs(turn%force - before%force), abs(turn%force - now%force))
+        friction = over_load(self, i, turn%force - rest(1) - (rest(2) - rest(1)) * (turn%time &
+            - old%time) / (new%time - old%time), new%normal)
+    end subroutine find_turn
+
+    !> Friction of a block that slides without contact spring, from its friction coefficient.
+    pure function sliding(self, state, load, way) result(force)
+        class(slip_watch), intent(in) :: self
+        type(slider_state), intent(in) :: state
+        real(dp), intent(in) :: load   !! normal traction [F/L^2]
+        real(dp), intent(in) :: way    !! that it slides [L]
+        real(dp) :: force              !! [F]
+
+        force = sign(self%area * min(state%statev(1, statev_mu) * load + self%cohesion, self%cap), &
+            way)
+    end function sliding
+
+    !> Friction coefficient in the sense of the loading of a piece.
+    pure function over_load(self, i, force, load) result(friction)
+        class(slip_watch), intent(in) :: self
+        integer, intent(in) :: i          !! piece
+        real(dp), intent(in) :: force     !! of friction [F]
+        real(dp), intent(in) :: load      !! normal traction [F/L^2]
+        real(dp) :: friction              !! [-]
+
+        friction = force / (self%area * load)
+        if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table
+    end function over_load
 
     pure function mean_of(state) result(friction)
         type(slider_state), intent(in) :: state

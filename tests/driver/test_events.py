@@ -33,6 +33,14 @@ class EventsOfRuns(Program):
 
 
 class Events(EventsOfRuns):
+    def test_no_event_is_faster_than_the_largest_velocity_of_the_summary(self):
+        # both are found within the steps: the summary had 3.6118 of 3.6670
+        events = self.events("""&friction law='static_kinetic', alpha_n=1000, alpha_t=100, mu_s=0.6, mu_k=0.3, d_c=5, contact='rigid' /
+            &slider mass=1e-2, stiffness=1, normal_traction=1 / &drive velocity=0.5 / &time t_end=5, rtol=1e-5 /""")
+        self.assertEqual(len(events), 3)
+        fastest = float(self.said.split('peak velocity')[1].split()[0])
+        self.assertAlmostEqual(fastest, max(event['peak_velocity'] for event in events), delta=1e-5)
+
     def test_an_undamped_contact_rings_as_it_began_until_it_slips(self):
         # explicit steps amplified that to what the error sees, and let it go 0.8 early at 1e-4
         onsets = [self.events(f"""&friction law='slip_weakening', alpha_n=1e3, alpha_t=1e3, mu_s=0.4, mu_k=0.2, d_c=0.1 /
@@ -333,6 +341,15 @@ class Pieces(Program):
         self.assertTrue(math.isnan(table[1]['healing']))
         self.assertEqual([row['events'] for row in table], [0] * 5)
 
+    def peak(self, law, drive, sense=1):
+        """Friction in the second piece, on a rigid contact."""
+        if sense < 0:
+            drive = drive.replace('=0.1, 0', '=-0.1, -0')
+        result = self.run_text(f"""&friction {law}, alpha_n=1000, alpha_t=100, contact='rigid' /
+            &slider mass=1e-4, stiffness=1, normal_traction=1 / &drive {drive} / &time t_end=11, rtol=1e-6 /""", '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return float(self.rows('case_out/case_pieces.csv')[1]['peak_friction'])
+
     def test_a_mirrored_programme_has_the_same_table(self):
         drive = [(1, 20), (0, 10), (1, 30), (3, 30), (2, 5)]
         text = BLOCK.replace('mass=1e-3', 'mass=0').replace('stiffness=1,', 'stiffness=100,').replace('xi=10', 'xi=0.1')
@@ -366,6 +383,22 @@ class Pieces(Program):
             self.assertAlmostEqual(piece['least_friction'], least, delta=1e-12)
             self.assertAlmostEqual(piece['peak_friction'], peak, delta=1e-12)
         self.assertAlmostEqual(pieces[1]['direct_effect'], 0.2, delta=1e-12)
+
+    def test_friction_on_a_rigid_contact_is_told_up_to_where_the_block_comes_to_rest_within_a_step(self):
+        # the load rises: a sliding block stops in the first step and is held by less than friction. It falls, and a block that is held by
+        # less than friction slides, faster and faster, from the static coefficient on. A piece starts without load, and the block
+        # comes to rest in its first step
+        cases = (("law='coulomb', mu=0.6", 'velocity=0.1, 0.1, duration=10, 1, normal=1, 2'),
+                 ("law='static_kinetic', mu_s=0.6, mu_k=0.2, d_c=1", 'velocity=0.1, 0.1, 0, duration=5, 0.001, 1, normal=1, 0.2, 0.2'),
+                 ("law='coulomb', mu=0.6", "velocity=0.1, 0.01, duration=0.01, 0.3, normal=0, 1, normal_change='ramp'"))
+        for sign in (1, -1):
+            for law, drive in cases:
+                self.assertAlmostEqual(self.peak(law, drive, sign), 0.6, delta=1e-12)
+
+    def test_friction_that_stays_does_not_turn_with_the_force_of_a_block_that_swings_against_it(self):
+        # was 0.60009
+        for drive in ('velocity=0.1, 0.1, duration=4, 20, normal=1, 1', "velocity=0.1, 0.1, duration=1, 1, normal=0, 1, normal_change='ramp'"):
+            self.assertAlmostEqual(self.peak("law='coulomb', mu=0.6", drive), 0.6, delta=1e-12)
 
     def test_friction_is_not_told_where_the_normal_traction_vanishes(self):
         # where it is as small as the error of the friction force: 262 and 327 at these tolerances
