@@ -30,6 +30,7 @@ module continuous_steps
     integer, parameter, public :: implicit_rates = 11   !! evaluations of a block's in a step
     !> Part of the time that no step is shorter than.
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
+    real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
 
     type, extends(integrator) :: continuous
         type(moving_block) :: block
@@ -135,7 +136,7 @@ contains
         again = .false.
         do
             wanted = min(self%dt, longest(self))
-            if (self%swings) wanted = min(self%dt_max, 1.0_dp / self%free%frequency)
+            if (self%swings) wanted = min(self%dt_max, quarter / self%free%frequency)
             end = end_of_step(old%time, wanted, self%limit)
             associate (eq => self%block%equations)
                 if (.not. (eq%steady .or. eq%across%free())) then
@@ -338,15 +339,16 @@ contains
     end subroutine attempt
 
     !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
-    !> sense of the traction, and where it turns back from beyond zero traction, or slip between two
-    !> ends would not be seen.
+    !> sense of the traction, where the drive spring turns, and where the block turns back from
+    !> beyond zero traction, or slip between two ends would not be seen.
     subroutine swing_on(self, t, tried)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t             !! [T]
         type(trial), intent(inout) :: tried   !! its length is given
         real(dp), parameter :: far = 1.0e-3_dp   !! part of the step
         real(dp) :: v_drive, turn
-        logical :: failed
+        type(trial) :: there
+        logical :: failed, found
 
         associate (block => self%block, eq => self%block%equations)
             v_drive = block%y(velocity) + block%first(extension)
@@ -355,9 +357,11 @@ contains
                 if (turn > far * tried%h) tried%h = min(tried%h, turn)
             end if
             call self%free%go_on(tried%h, block%y, v_drive, block%first(memory), tried%y)
-            if (eq%sense * block%y(velocity) < 0.0_dp .and. eq%sense * tried%y(velocity) &
-                > 0.0_dp) then
-                call end_beyond_zero(self, v_drive, tried)
+            call pass_speed(self, v_drive, v_drive, tried, there, found)
+            if (found .and. there%h > far * tried%h) tried = there
+            if (eq%sense * block%y(velocity) < 0.0_dp) then
+                call pass_speed(self, v_drive, 0.0_dp, tried, there, found)
+                if (found .and. eq%sense * there%y(elastic) < 0.0_dp) tried = there
             end if
             call eq%rates(t + tried%h, tried%y, tried%last, failed)
         end associate
@@ -367,35 +371,38 @@ contains
         self%jumped = .false.
     end subroutine swing_on
 
-    !> Ends a step in which the block turns back where it does so, if its traction has changed its
-    !> side there.
-    subroutine end_beyond_zero(self, v_drive, tried)
+    !> The step that ends where the block passes a velocity within one, if it does.
+    subroutine pass_speed(self, v_drive, speed, whole, part, found)
         class(continuous), intent(in) :: self
-        real(dp), intent(in) :: v_drive   !! [L/T]
-        type(trial), intent(inout) :: tried
+        real(dp), intent(in) :: v_drive       !! [L/T]
+        real(dp), intent(in) :: speed         !! that it passes [L/T]
+        type(trial), intent(in) :: whole
+        type(trial), intent(out) :: part
+        logical, intent(out) :: found
         integer, parameter :: most_tries = 40
         real(dp), parameter :: close = 1.0e-12_dp
         type(root_bracket) :: bracket
-        real(dp) :: y(unknowns), h, before
+        real(dp) :: h, sense
         integer :: i
 
-        associate (block => self%block, sense => self%block%equations%sense)
-            bracket%high = tried%h
-            bracket%g_low = sense * block%y(velocity)
-            bracket%g_high = sense * tried%y(velocity)
+        associate (block => self%block)
+            sense = sign(1.0_dp, whole%y(velocity) - speed)
+            bracket%high = whole%h
+            bracket%g_low = sense * (block%y(velocity) - speed)
+            bracket%g_high = sense * (whole%y(velocity) - speed)
+            found = bracket%g_low < 0.0_dp
+            part = whole
+            if (.not. found) return
             h = bracket%guess()
             do i = 1, most_tries
-                call self%free%go_on(h, block%y, v_drive, block%first(memory), y)
-                call bracket%take(h, sense * y(velocity))
-                before = h
+                part%h = h
+                call self%free%go_on(h, block%y, v_drive, block%first(memory), part%y)
+                call bracket%take(h, sense * (part%y(velocity) - speed))
                 h = bracket%guess()
-                if (abs(h - before) <= close * tried%h) exit
+                if (abs(h - part%h) <= close * whole%h) exit
             end do
-            if (sense * y(elastic) >= 0.0_dp) return
         end associate
-        tried%h = before
-        tried%y = y
-    end subroutine end_beyond_zero
+    end subroutine pass_speed
 
     !> What the error of each unknown is compared with.
     subroutine set_weights(self, t)
@@ -456,7 +463,7 @@ contains
                                     ! says
         bracket%g_high = g(which) - 0.5_dp * enough
         again = tried
-        middle = share * tried%h
+        middle = tried%h * (share + (1.0_dp - share) * min(1.0_dp, 0.5_dp * enough / g(which)))
         if (self%swings) then   ! a step in closed form costs no more than a guess
             call switch_values(self%block%equations, t, self%block%y, self%block%first, before)
             bracket%g_low = min(before(which), 0.0_dp) - 0.5_dp * enough

@@ -75,24 +75,26 @@ contains
         stiffness = 0.0_dp
         associate (c => pair%c, a2 => pair%a2, a3 => pair%a3, a4 => pair%a4, a5 => pair%a5, &
             a6 => pair%a6, b => pair%b, e => pair%e)
-            w(:n) = y(:n) + h * (a2(1) * first(:n))
+            ! what a processor waits for, the rates of the stage before, comes last in each sum
+            w(:n) = y(:n) + (h * a2(1)) * first(:n)
             call equations%rates(t + c(2) * h, w, k2, failed)
             if (failed) return
-            w(:n) = y(:n) + h * (a3(1) * first(:n) + a3(2) * k2(:n))
+            w(:n) = (y(:n) + (h * a3(1)) * first(:n)) + (h * a3(2)) * k2(:n)
             call equations%rates(t + c(3) * h, w, k3, failed)
             if (failed) return
-            w(:n) = y(:n) + h * (a4(1) * first(:n) + a4(2) * k2(:n) + a4(3) * k3(:n))
+            w(:n) = (y(:n) + h * (a4(1) * first(:n) + a4(2) * k2(:n))) + (h * a4(3)) * k3(:n)
             call equations%rates(t + c(4) * h, w, k4, failed)
             if (failed) return
-            w(:n) = y(:n) + h * (a5(1) * first(:n) + a5(2) * k2(:n) + a5(3) * k3(:n) + a5(4) &
-                * k4(:n))
+            w(:n) = (y(:n) + h * (a5(1) * first(:n) + a5(2) * k2(:n) + a5(3) * k3(:n))) &
+                + (h * a5(4)) * k4(:n)
             call equations%rates(t + c(5) * h, w, k5, failed)
             if (failed) return
-            w(:n) = y(:n) + h * (a6(1) * first(:n) + a6(2) * k2(:n) + a6(3) * k3(:n) + a6(4) &
-                * k4(:n) + a6(5) * k5(:n))
+            w(:n) = (y(:n) + h * (a6(1) * first(:n) + a6(2) * k2(:n) + a6(3) * k3(:n) + a6(4) &
+                * k4(:n))) + (h * a6(5)) * k5(:n)
             call equations%rates(t + h, w, k6, failed)
             if (failed) return
-            new = y + h * (b(1) * first + b(2) * k2 + b(3) * k3 + b(4) * k4 + b(5) * k5 + b(6) * k6)
+            new = (y + h * (b(1) * first + b(2) * k2 + b(3) * k3 + b(4) * k4 + b(5) * k5)) &
+                + (h * b(6)) * k6
             call equations%rates(t + h, new, last, failed)
             if (failed) return
             error = 0.0_dp
