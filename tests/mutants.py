@@ -98,21 +98,18 @@ def mutants_of(file):
 
 
 def known_equivalents():
-    """What is explained: file, text of the line, mutation, each with ... for anything, and the reason."""
-    known = []
+    """What is explained: of each file, text of the line and mutation, with ... for anything."""
+    known = collections.defaultdict(list)
     for line in EQUIVALENT.read_text().splitlines():
         if line.strip() and not line.startswith('#'):
-            *parts, reason = (part.strip() for part in line.split(' | '))
-            file, text, what = (re.compile(re.escape(part).replace(r'\.\.\.', '.*')) for part in parts)
-            known.append(((file, text, what), reason))
+            file, *parts, _ = (part.strip() for part in line.split(' | '))
+            text, what = (re.compile(re.escape(part).replace(r'\.\.\.', '.*')) for part in parts)
+            known[file].append((text, what))
     return known
 
 
-def explained(mutant, known):
-    for patterns, _ in known:
-        if all(pattern.fullmatch(part) for pattern, part in zip(patterns, mutant.key()[:3])):
-            return patterns
-    return None
+def explains(patterns, mutant):
+    return all(pattern.fullmatch(part) for pattern, part in zip(patterns, mutant.key()[1:3]))
 
 
 def run(command, **options):
@@ -152,6 +149,25 @@ class Test:
             passes = self.passes(-1, STICKSLIP_NOTES=str(notes), STICKSLIP_MUTANTS=str(size), GFORTRAN_ERROR_BACKTRACE='0')
         self.notes = notes.read_bytes() if passes else bytes([3]) * (size + 1)
         return passes
+
+
+def build_files(library):
+    """The build's files, changed: what is loaded first takes the place of the same in the library, which is no object of one piece
+    and hides no name."""
+    changed = {pathlib.Path(name): (ROOT / name).read_text() for name in ('CMakeLists.txt', 'src/CMakeLists.txt')}
+    for name, old, new in (('CMakeLists.txt', 'include(CheckLanguage)', f'link_libraries({library} gfortran)\ninclude(CheckLanguage)'),
+                           ('CMakeLists.txt', ';-fno-semantic-interposition', ''), ('src/CMakeLists.txt', ' -fno-semantic-interposition', ''),
+                           ('src/CMakeLists.txt', '-O3', '-O1'),
+                           ('src/CMakeLists.txt', 'set(library_sources', 'set(library_sources\n    mutant_switch_kernel.f90')):
+        if old not in changed[pathlib.Path(name)]:
+            sys.exit(f'{name}: no {old}')
+        changed[pathlib.Path(name)] = changed[pathlib.Path(name)].replace(old, new)
+    for name, content in (('OneObject', 'set(stickslip_one_object OFF)\n'),
+                          ('ExportOnly', 'function(stickslip_export_only)\nendfunction()\nfunction(stickslip_export_header)\nendfunction()\n')):
+        changed[pathlib.Path(f'cmake/{name}.cmake')] = content
+        if f'cmake/{name}.cmake)' not in ''.join(changed.values()):
+            sys.exit(f'No cmake/{name}.cmake is included')
+    return {name: text.encode() for name, text in changed.items()}
 
 
 class Base:
@@ -235,14 +251,7 @@ class Base:
             switched = mutant_switches.Switched(source, of_file[str(name)], 1 + place * MOST).settle(self.settled)
             self.number_of.update({mutant: it for it, mutant in switched.numbers().items()})
             files[name] = (self.settled / source.name).read_bytes()
-        # What is loaded first takes the place of the same in the library.
-        for name, old, new in (('CMakeLists.txt', 'include(CheckLanguage)', f'link_libraries({library} gfortran)\ninclude(CheckLanguage)'),
-                               ('CMakeLists.txt', ';-fno-semantic-interposition', ''), ('src/CMakeLists.txt', ' -fno-semantic-interposition', ''),
-                               ('src/CMakeLists.txt', '-O3', '-O1'), ('src/CMakeLists.txt', '  check_ipo_supported(', '  set(one_object OFF)  #'), ('src/CMakeLists.txt', 'set(library_sources', 'set(library_sources\n    mutant_switch_kernel.f90')):
-            if old.encode() not in files[pathlib.Path(name)]:
-                sys.exit(f'{name}: no {old}')
-            files[pathlib.Path(name)] = files[pathlib.Path(name)].replace(old.encode(), new.encode())
-        files[pathlib.Path('cmake/ExportOnly.cmake')] = b'function(stickslip_export_only)\nendfunction()\nfunction(stickslip_export_header)\nendfunction()\n'
+        files.update(build_files(library))
         for name, content in files.items():
             target = self.tree / name
             if not target.exists() or target.read_bytes() != content:
@@ -360,14 +369,22 @@ def main():
     parser.add_argument('--limit', type=float, default=3, help='tests that take longer than this are left out [s]')
     parser.add_argument('--journal', type=pathlib.Path, default=ROOT / 'build/mutants.journal', help='what is known already')
     parser.add_argument('--list', action='store_true', help='list the mutants and do nothing')
+    parser.add_argument('--check', action='store_true', help='only see whether what is explained and the build are as this expects')
     options = parser.parse_args()
 
     known = known_equivalents()
     every = [mutant for file in sorted((ROOT / 'src').rglob('*.f90'))
              for mutant in mutants_of(str(file.relative_to(ROOT)))]
-    stale = [patterns for patterns, _ in known if not any(explained(mutant, [(patterns, '')]) for mutant in every)]
-    for patterns in stale:
-        print('tests/mutants_equivalent.txt, no such line or mutation any more:', ' | '.join(it.pattern for it in patterns))
+    stale = 0
+    for file, entries in known.items():
+        of_file = [mutant for mutant in every if mutant.file == file]
+        for patterns in entries:
+            if not any(explains(patterns, mutant) for mutant in of_file):
+                stale += 1
+                print('tests/mutants_equivalent.txt, no such line or mutation any more:', file, *(it.pattern for it in patterns), sep=' | ')
+    build_files('')   # before hours are spent, whether they are as expected
+    if options.check:
+        return int(stale > 0)
     mutants = list(dict.fromkeys(mutant for pattern in options.pattern for mutant in every if fnmatch.fnmatch(mutant.file, pattern)))
     if options.sample is not None and options.sample < len(mutants):
         mutants = random.Random(options.seed).sample(mutants, options.sample)
@@ -377,7 +394,7 @@ def main():
             *key, fate = json.loads(line)
             fates[tuple(key)] = fate
     for mutant in mutants:
-        if fates.get(mutant.key(), 'survives').startswith('survives') and explained(mutant, known):
+        if fates.get(mutant.key(), 'survives').startswith('survives') and any(explains(it, mutant) for it in known[mutant.file]):
             fates[mutant.key()] = 'explained'
     waiting = [mutant for mutant in mutants if fates.get(mutant.key(), 'survives').startswith('survives')]
     print(f'{len(mutants)} mutants, {len(waiting)} to try', flush=True)
