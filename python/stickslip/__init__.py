@@ -7,7 +7,8 @@ from ._library import message, version as __version__
 from ._fit import Fit, fit
 from ._namelist import InputError
 from ._rates import Rates, SlipRates, rates, slip_rates
-from ._rate_state import RateStateFit, fit_rate_and_state
+from ._rate_state import fit_rate_and_state
+from ._rate_state_result import RateStateFit
 from ._records import Record, RecordError
 from ._run import Run, RunError, run
 from ._stability import Stability, stability

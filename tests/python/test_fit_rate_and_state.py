@@ -11,9 +11,9 @@ class RateAndState(VelocitySteps):
     def test_a_velocity_step_and_a_hold_give_their_constants_back(self):
         true = {'a': 0.01, 'b': 0.014, 'd_c': 5.0, 'stiffness': 0.02}
         t = np.concatenate([np.arange(0, 40, 0.5), np.arange(40, 80, 0.1), np.arange(80, 130, 0.5)])
-        from stickslip._rate_state import _Steps
+        from stickslip._rate_state_model import Steps
         velocity, changes = np.array([3.0, 10.0, 0.0, 10.0]), np.array([40.0, 80.0, 110.0])
-        steps = _Steps(t, t, changes, velocity, np.ones_like(t), np.zeros_like(changes))
+        steps = Steps(t, t, changes, velocity, np.ones_like(t), np.zeros_like(changes))
         friction = steps.model(np.array(list(true.values())), 'ageing')
         noisy = friction + 1e-4 * t / 130 + 1e-4 * np.random.default_rng(1).normal(size=t.size)
         found = stickslip.fit_rate_and_state(t, noisy, changes=changes, velocity=velocity, starts=16,
@@ -27,11 +27,11 @@ class RateAndState(VelocitySteps):
 
     def test_the_model_is_that_of_an_independent_solver(self):
         """Also in a long record whose step is over in a thousandth of it."""
-        from stickslip._rate_state import _Steps
+        from stickslip._rate_state_model import Steps
         late = np.concatenate([np.arange(0.0, 3e4, 10.0), np.arange(3e4, 3.004e4, 0.02), np.arange(3.004e4, 6e4, 10.0)])
         for t, changes, velocity in ((self.TIME, self.CHANGES, self.VELOCITY), (late, np.array([3e4]), np.array([3.0, 10.0]))):
             for evolution in ('ageing', 'slip'):
-                model = _Steps(t, t, changes, velocity, t, np.zeros_like(changes)).model(np.array(list(self.TRUE.values())), evolution)
+                model = Steps(t, t, changes, velocity, t, np.zeros_like(changes)).model(np.array(list(self.TRUE.values())), evolution)
                 np.testing.assert_allclose(model, self.independent(t, changes, velocity, evolution), rtol=0.0, atol=3e-6)
 
     def test_changes_that_are_known_to_a_sample_only_are_no_fault(self):
@@ -53,7 +53,7 @@ class RateAndState(VelocitySteps):
 
     def test_a_drive_that_is_not_quite_steady_tells_when_it_changes(self):
         """Straight lines through whole pieces met a third of a second early where the velocity wanders by some per cent."""
-        from stickslip._rate_state import _lines
+        from stickslip._rate_state_record import _lines
         draw, edges = np.random.default_rng(3), np.array([0.0, 40.0, 129.99])
         time = np.concatenate([np.arange(0.0, 35.0, 0.1), np.arange(35.0, 130.0, 0.01)])
         drive = np.where(time < 40.0, 3.0 * time, 120.0 + 10.0 * (time - 40.0))
@@ -68,15 +68,16 @@ class RateAndState(VelocitySteps):
 
     def test_constants_at_a_bound_or_beside_failing_runs_have_no_false_errors(self):
         """Both gave intervals of almost no width."""
-        from stickslip._rate_state import NAMES, _limits, _prepare, _Search
+        from stickslip._rate_state_model import NAMES, Search, limits_of
+        from stickslip._rate_state_record import prepare
         strong = self.independent(self.TIME, self.CHANGES, self.VELOCITY, true={**self.TRUE, 'a': 0.15, 'b': 0.2, 'stiffness': 0.1})
         found = stickslip.fit_rate_and_state(self.TIME, strong + 2e-4 * np.random.default_rng(1).normal(size=strong.size),
                                              changes=self.CHANGES, velocity=self.VELOCITY, starts=16)
         self.assertIn('b ends at its bound', found.warnings)
         self.assertIn('b', found.undetermined)
         self.assertEqual(found.intervals['b'][1], np.inf)
-        record = _prepare(self.TIME, 0.6 + 1e-3 * np.sin(self.TIME), self.CHANGES, None, self.VELOCITY, 0.0)
-        search = _Search(record, _limits(record, {}), frozenset(), 'ageing')
+        record = prepare(self.TIME, 0.6 + 1e-3 * np.sin(self.TIME), self.CHANGES, None, self.VELOCITY, 0.0)
+        search = Search(record, limits_of(record, {}), frozenset(), 'ageing')
         runs, fails = np.log(1e-3), np.log(1e-5)   # stiffness
         while runs - fails > 1e-4:
             middle = 0.5 * (runs + fails)
