@@ -7,6 +7,7 @@ module namelist_input
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use fault_list, only : append_fault, fault
+    use known_key_list, only : known_keys
     use namelist_parser, only : group_seen, namelist_entry, parse_namelists, parsed_text, &
         value_token
     use namelist_rules, only : above, any_number, at_least, between, not_zero, rule
@@ -20,15 +21,8 @@ module namelist_input
     public :: above, any_number, at_least, between, lower, namelist_file, not_zero, &
         read_logical, read_namelist_file, read_namelist_text, rule
 
-    integer, parameter :: name_length = 64
     integer, parameter :: most_shown = 50        !! faults
     integer, parameter :: most_of_a_list = 10    !! of its values that are refused one by one
-
-    !> A key that the program knows, or one that it knows in another place.
-    type :: known_key
-        character(len=name_length) :: group = '', key = ''
-        character(len=:), allocatable :: hint    !! where it belongs; not allocated: here
-    end type known_key
 
     type :: namelist_file
         character(len=:), allocatable :: name
@@ -39,8 +33,7 @@ module namelist_input
                                                      !! name: its quoted values
         logical, private :: broken = .false.     !! the text could not be read to its end
         integer, private :: not_listed = 0       !! faults that are only counted
-        type(known_key), allocatable, private :: keys(:)
-        integer, private :: n_keys = 0
+        type(known_keys), private :: keys
     contains
         procedure :: get_real, get_reals, get_integer, get_choice, get_choices, get_text, &
             get_logical
@@ -89,7 +82,6 @@ contains
         call move_alloc(parsed%groups, file%groups)
         call move_alloc(parsed%faults, file%faults)
         call note_files(file)
-        allocate (file%keys(32))
     end subroutine take_text
 
     ! ---- asking for keys ---------------------------------------------------------------------
@@ -460,18 +452,9 @@ contains
     subroutine note(self, group, key)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        integer :: i
 
-        do i = 1, size(self%groups)
-            if (self%groups(i)%name == group) self%groups(i)%known = .true.
-        end do
-        do i = 1, self%n_keys
-            if (self%keys(i)%key /= key .or. self%keys(i)%group /= group) cycle
-            if (.not. allocated(self%keys(i)%hint)) return
-        end do
-        if (self%n_keys == size(self%keys)) self%keys = [self%keys, self%keys]   ! room
-        self%n_keys = self%n_keys + 1
-        self%keys(self%n_keys) = known_key(group, key)   ! without the hint of another
+        call note_group(self, group)
+        call self%keys%add(group, key)
     end subroutine note
 
     !> What to say of a key if it is given where the program does not ask for it, such as `belongs
@@ -479,14 +462,20 @@ contains
     subroutine belongs_elsewhere(self, group, key, hint)
         class(namelist_file), intent(inout) :: self
         character(len=*), intent(in) :: group, key, hint
+
+        call note_group(self, group)
+        call self%keys%add_elsewhere(group, key, hint)
+    end subroutine belongs_elsewhere
+
+    pure subroutine note_group(self, group)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group
         integer :: i
 
-        do i = 1, self%n_keys
-            if (self%keys(i)%key == key .and. self%keys(i)%group == group) return
+        do i = 1, size(self%groups)
+            if (self%groups(i)%name == group) self%groups(i)%known = .true.
         end do
-        call note(self, group, key)
-        self%keys(self%n_keys)%hint = hint
-    end subroutine belongs_elsewhere
+    end subroutine note_group
 
     !> Notes a fault if a key is not given; where its whole group is missing, that fault stands for
     !> it.
@@ -562,7 +551,7 @@ contains
         do i = 1, size(self%groups)
             if (self%groups(i)%known) cycle
             call self%add_fault(self%groups(i)%line, '&' // self%groups(i)%name &
-                // ': unknown group' // suggestion(self, self%groups(i)%name, ''))
+                // ': unknown group' // self%keys%suggestion(self%groups(i)%name, ''))
         end do
         unknown = 0
         do i = 1, size(self%entries)
@@ -571,85 +560,11 @@ contains
                 unknown = unknown + 1
                 if (unknown > most_shown) cycle
                 call self%add_fault(entry%line, '&' // entry%group // ' ' // entry%key &
-                    // ': unknown key' // suggestion(self, entry%group, entry%key))
+                    // ': unknown key' // self%keys%suggestion(entry%group, entry%key))
             end associate
         end do
         if (.not. self%broken) self%not_listed = max(0, unknown - most_shown)
     end subroutine refuse_unknown
-
-    !> What may have been meant by a key that is unknown: its hint in this group, one of its keys
-    !> that is much like it, or else another group that has it. With an empty key, what group may
-    !> have been meant. Empty where there is nothing to say.
-    function suggestion(self, group, key) result(text)
-        class(namelist_file), intent(in) :: self
-        character(len=*), intent(in) :: group, key
-        character(len=:), allocatable :: text
-        character(len=:), allocatable :: nearest, elsewhere
-        integer :: least, i
-
-        text = ''
-        if (len(group) > name_length .or. len(key) > name_length) return
-        nearest = ''
-        elsewhere = ''
-        least = max(1, len(key) / 3) + 1
-        if (len(key) == 0) least = max(1, len(group) / 3) + 1
-        do i = 1, self%n_keys
-            associate (known => self%keys(i))
-                if (len(key) == 0) then
-                    call compare(group, trim(known%group), '&')
-                else if (known%group /= group) then
-                    if (known%key == key .and. .not. allocated(known%hint)) elsewhere = known%group
-                else if (.not. allocated(known%hint)) then
-                    if (len_trim(known%key) > 0) call compare(key, trim(known%key), '')
-                else if (known%key == key) then
-                    text = '; ' // known%hint
-                    return
-                end if
-            end associate
-        end do
-        if (len(nearest) > 0) then
-            text = "; did you mean '" // nearest // "'?"
-        else if (len(elsewhere) > 0) then
-            text = '; &' // trim(elsewhere) // ' has a key of that name'
-        end if
-
-    contains
-
-        !> A word that is the beginning of another is much like it, too.
-        subroutine compare(word, known, mark)
-            character(len=*), intent(in) :: word, known, mark
-            integer :: distance
-
-            distance = edits(word, known)
-            if (index(known, word) == 1) distance = 1
-            if (distance >= least .or. distance == len(word) .and. known(1:1) /= word(1:1)) return
-            least = distance
-            nearest = mark // known
-        end subroutine compare
-
-    end function suggestion
-
-    !> How many letters must be changed, added, taken out or exchanged with the next one to turn
-    !> one word into another?
-    pure function edits(from, to) result(n)
-        character(len=*), intent(in) :: from, to
-        integer :: n
-        integer :: d(-1:len(from), -1:len(to)), cost, i, j
-
-        d = len(from) + len(to)
-        d(0:, 0) = [(i, i = 0, len(from))]
-        d(0, 0:) = [(j, j = 0, len(to))]
-        do j = 1, len(to)
-            do i = 1, len(from)
-                cost = merge(0, 1, from(i:i) == to(j:j))
-                d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, d(i - 1, j - 1) + cost)
-                if (min(i, j) == 1) cycle
-                if (from(i:i) == to(j - 1:j - 1) .and. from(i - 1:i - 1) == to(j:j)) d(i, j) = &
-                    min(d(i, j), d(i - 2, j - 2) + 1)
-            end do
-        end do
-        n = d(len(from), len(to))
-    end function edits
 
     pure function known_group(self, name) result(known)
         class(namelist_file), intent(in) :: self
