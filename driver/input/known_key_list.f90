@@ -38,8 +38,8 @@ contains
         self%keys(self%n) = known_key(group, key)   ! without the hint of another
     end subroutine add
 
-    !> A key that the program does not ask for in this group, and what to say of it there. Of several
-    !> hints to one key the first one counts.
+    !> A key that the program does not ask for in this group, and what to say of it there. Of
+    !> several hints to one key the first one counts.
     subroutine add_elsewhere(self, group, key, hint)
         class(known_keys), intent(inout) :: self
         character(len=*), intent(in) :: group, key, hint

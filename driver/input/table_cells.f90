@@ -1,5 +1,5 @@
-!> The cells of a line of a table, as rigs and spreadsheets write it: separated by commas, semicolons,
-!> tabs or blanks, some of them in double quotes.
+!> The cells of a line of a table, as rigs and spreadsheets write it: separated by commas,
+!> semicolons, tabs or blanks, some of them in double quotes.
 module table_cells
     implicit none
     private
