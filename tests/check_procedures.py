@@ -48,6 +48,7 @@ EXCEPTIONS = {
     ('tests/unit/calculix_calls.f90', '*'): HOST,
     ('tests/unit/kratos_calls.f90', '*'): HOST,
     ('driver/model/linear_stability.f90', 'dgeev'): LAPACK,
+    ('driver/stepping/rosenbrock.f90', 'dgeev'): LAPACK,
     ('tests/unit/test_linear_stability.pf', 'dgeev'): LAPACK,
     ('src/friction_c.f90', '*'): C,
     ('src/friction_c_point.f90', '*'): C,

@@ -14,10 +14,10 @@ module continuous_steps
     use free_swing, only : swing
     use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
         root_bracket, settle, switch_values, switches
-    use rosenbrock, only : rosenbrock_step
+    use rosenbrock, only : growth_rate, rosenbrock_step
     use run_settings, only : settings
     use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
-        phase_open, phase_stick, place, slip, unknowns, velocity
+        phase_open, phase_slide, phase_stick, place, slip, slider_equations, unknowns, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -32,6 +32,14 @@ module continuous_steps
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
 
+    !> How a block swings on springs.
+    type :: oscillation
+        real(dp) :: radian = huge(1.0_dp)   !! time of one; huge where it does not swing [T]
+        real(dp) :: phase = 0.0_dp          !! what damping allows an explicit step [rad]
+    contains
+        procedure :: longest_step
+    end type oscillation
+
     type, extends(integrator) :: continuous
         type(moving_block) :: block
         real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
@@ -42,8 +50,9 @@ module continuous_steps
         logical :: implicit = .false.           !! steps by Rodas4
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
-        real(dp) :: ringing = huge(1.0_dp)      !! radian of an undamped contact [T]
-        real(dp) :: swinging = huge(1.0_dp)     !! and of the motion across the interface
+        type(oscillation) :: ringing            !! of a contact that sticks
+        type(oscillation) :: swinging           !! on the drive spring alone
+        type(oscillation) :: lifting            !! of the motion across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
         logical :: reloaded = .false.           !! it is not always the same
         type(swing) :: free                     !! of a block whose contact rests
@@ -88,9 +97,10 @@ contains
                 eq%open_below = -tiny(self%largest)
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
-            if (.not. eq%rigid) self%ringing = undamped_radian(eq%mass, eq%stiffness + eq%area &
+            self%swinging = oscillation_of(eq%mass, eq%stiffness, eq%damping)
+            if (.not. eq%rigid) self%ringing = oscillation_of(eq%mass, eq%stiffness + eq%area &
                 * eq%alpha, eq%damping + eq%area * eq%damper)
-            self%swinging = undamped_radian(eq%across%mass, eq%across%stiffness + eq%area &
+            self%lifting = oscillation_of(eq%across%mass, eq%across%stiffness + eq%area &
                 * eq%alpha_n, eq%across%damping)
             call self%free%prepare(eq)
             eq%may_rest = eq%surface%traits%memory == 1 .and. self%free%frequency > 0.0_dp &
@@ -104,22 +114,34 @@ contains
         end associate
     end subroutine prepare
 
-    !> The time in which a block on its springs swings by a radian, if nothing damps that: explicit
-    !> steps longer than a part of it amplify the swings [T].
-    pure function undamped_radian(mass, stiffness, damping) result(dt)
+    !> What explicit steps are to know of a block on its springs. Longer ones than the phase allows
+    !> amplify what the tolerated error does not see: of both pairs a radian or more of a damped
+    !> swing goes well where that decays by at least half as fast as it should.
+    pure function oscillation_of(mass, stiffness, damping) result(swings)
         real(dp), intent(in) :: mass        !! 0: it does not swing [F T^2/L]
         real(dp), intent(in) :: stiffness   !! of all its springs [F/L]
         real(dp), intent(in) :: damping     !! [F T/L]
-        real(dp) :: dt
-        real(dp), parameter :: least_damping = 1.0e-3_dp  !! ratio
-        real(dp) :: critical
+        type(oscillation) :: swings
+        real(dp), parameter :: one_radian = 3.0e-4_dp   !! damping ratio that allows this
+        real(dp), parameter :: most_damped = 0.5_dp     !! stability is as on the real axis
+        real(dp) :: ratio
 
-        dt = huge(dt)
         if (.not. mass > 0.0_dp) return
-        critical = 2.0_dp * sqrt(stiffness * mass)
-        if (damping >= least_damping * critical) return
-        dt = sqrt(mass / stiffness)
-    end function undamped_radian
+        ratio = 0.5_dp * damping / sqrt(stiffness * mass)
+        if (ratio > most_damped) return
+        swings%radian = sqrt(mass / stiffness)
+        swings%phase = (ratio / one_radian)**(1.0_dp / 7.0_dp)
+    end function oscillation_of
+
+    !> The longest explicit step that does not amplify the swings [T].
+    pure function longest_step(self, pair) result(dt)
+        class(oscillation), intent(in) :: self
+        type(explicit_pair), intent(in) :: pair
+        real(dp) :: dt
+
+        dt = self%radian
+        if (dt < huge(dt)) dt = dt * max(pair%neutral, self%phase)
+    end function longest_step
 
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self
@@ -127,7 +149,7 @@ contains
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
         type(trial) :: tried
-        real(dp) :: end, wanted, before, opening, slipped
+        real(dp) :: end, wanted, stable, before, opening, slipped
         real(dp) :: h, error   ! of the step in whole, before it ends with a phase
         integer :: piece
         logical :: again
@@ -135,8 +157,8 @@ contains
         call self%begin(old, piece)
         again = .false.
         do
-            wanted = min(self%dt, longest(self))
-            if (self%swings) wanted = min(self%dt_max, quarter / self%free%frequency)
+            stable = longest(self)
+            wanted = min(merge(stable, self%dt, self%swings), self%dt_max, stable)
             end = end_of_step(old%time, wanted, self%limit)
             associate (eq => self%block%equations)
                 if (.not. (eq%steady .or. eq%across%free())) then
@@ -166,7 +188,7 @@ contains
         if (tried%switch > 0 .or. tried%h < end - old%time) end = old%time + tried%h
         if (.not. self%swings) then
             call self%lengthen(h, error, wanted, again)
-            call self%choose_method(tried)
+            call self%choose_method(tried, stable)
         end if
         associate (block => self%block, eq => self%block%equations)
             slipped = block%y(slip)
@@ -182,32 +204,47 @@ contains
         call self%fill(end, piece, old, new)
     end subroutine step
 
-    !> Does the block swing on a contact that rests, by more than the tolerated error, or without an
-    !> end?
+    !> Does the block swing on a contact that rests, by what explicit steps would have to follow?
     pure function swings_freely(self) result(yes)
         class(continuous), intent(in) :: self
         logical :: yes
+        real(dp), parameter :: unseen = 0.01_dp   !! part of the tolerated error
 
         yes = .false.
         associate (eq => self%block%equations, y => self%block%y)
             if (.not. eq%rests .or. eq%phase /= phase_stick) return
-            yes = self%ringing < huge(self%ringing) .or. self%free%amplitude(y(:controlled), &
-                y(velocity) + self%block%first(extension)) * self%weights(elastic) > 1.0_dp
+            yes = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension)) &
+                * self%weights(elastic) > unseen
         end associate
     end function swings_freely
 
-    !> Length of the longest step [T]. An undamped contact that does not slip rings as it began:
-    !> explicit steps that amplify what the error does not see let it go early.
+    !> Length of the longest step that is stable [T]: of an explicit one that which amplifies no
+    !> swing, on the springs that the block has at its slip rate. In closed form a quarter of one.
     pure function longest(self) result(dt)
         class(continuous), intent(in) :: self
         real(dp) :: dt
         real(dp), parameter :: slow = 0.1_dp   !! slip rate, part of the velocity
 
-        dt = self%dt_max
-        if (self%implicit .or. self%block%equations%phase == phase_open) return
-        dt = min(dt, self%pair%neutral * self%swinging)
-        if (self%block%first(slip) <= slow * abs(self%block%y(velocity))) dt = min(dt, &
-            self%pair%neutral * self%ringing)
+        dt = huge(dt)
+        if (self%swings) dt = quarter / self%free%frequency
+        if (self%swings .or. self%implicit) return
+        associate (eq => self%block%equations, slip_rate => self%block%first(slip), &
+            speed => abs(self%block%y(velocity)))
+            if (eq%phase == phase_open) then
+                dt = self%swinging%longest_step(self%pair)
+                return
+            end if
+            dt = self%lifting%longest_step(self%pair)
+            if (eq%rigid .and. eq%phase == phase_stick) return
+            if (slip_rate <= slow * speed) then
+                dt = min(dt, self%ringing%longest_step(self%pair))
+            else
+                dt = min(dt, self%swinging%longest_step(self%pair))
+                if (slip_rate >= speed .or. self%ringing%radian >= dt) return
+                dt = min(dt, self%ringing%radian * max(1.0_dp, 1.15_dp * self%ringing%phase) &
+                    / sqrt(1.0_dp - slip_rate / speed))
+            end if
+        end associate
     end function longest
 
     !> Takes the block to what holds from the start of a step on.
@@ -329,6 +366,9 @@ contains
                     tried%y, tried%error, growth)
                 tried%stiffness = tried%h * growth
                 if (tried%error <= 1.0_dp) call look_at(block, t, self%weights(elastic), tried)
+                if (tried%error <= 1.0_dp .and. tried%stiffness > 5.0_dp .and. may_grow( &
+                    block%equations)) tried%error = max(tried%error, (tried%h * growth_rate( &
+                    block%equations, t + tried%h, tried%y, tried%last, self%natural))**4)
             end associate
         else
             call explicit_step(self%pair, self%block%equations, t, tried%h, self%block%y, &
@@ -339,6 +379,15 @@ contains
         call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
         self%jumped = .not. tried%error < huge(tried%error)
     end subroutine attempt
+
+    !> May a disturbance grow that the tolerated error does not see? Long steps of Rodas4 would damp
+    !> it: a block would slide steadily that is going to stick. Creep has steps for it anyway.
+    pure function may_grow(eq) result(yes)
+        type(slider_equations), intent(in) :: eq
+        logical :: yes
+
+        yes = eq%across%free() .or. eq%phase == phase_slide .and. .not. eq%surface%traits%stiff
+    end function may_grow
 
     !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
     !> sense of the traction, where the drive spring turns, and where the block turns back from
@@ -439,6 +488,7 @@ contains
         integer, parameter :: most_tries = 40
         real(dp), parameter :: close = 1.0e-12_dp
         real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
+        real(dp), parameter :: late = 0.03_dp     !! part of a swing's speed
         type(trial) :: again
         type(root_bracket) :: bracket
         real(dp) :: g(switches), before(switches), middle, share, enough
@@ -458,8 +508,10 @@ contains
             share = min(share, middle)
         end do
         enough = 0.0_dp
-        if (self%block%equations%rests .and. which == 1) enough = sqrt(unseen * g(which) &
-            / (tried%h * self%weights(elastic)))
+        if (self%block%equations%rests .and. which == 1) enough = min(sqrt(unseen * g(which) &
+            / (tried%h * self%weights(elastic))), late * self%free%frequency &
+            * self%free%amplitude(self%block%y(:controlled), self%block%y(velocity) &
+            + self%block%first(extension)))
         bracket%high = tried%h
         bracket%g_low = -g(which)   ! the start is before the end of the phase, whatever round-off
                                     ! says
@@ -517,12 +569,14 @@ contains
         end do
     end subroutine pass
 
-    !> Changes the method after fifteen stiff steps of the explicit one, or three calm ones of the
-    !> implicit one.
-    subroutine choose_method(self, tried)
+    !> Changes the method after fifteen steps of the explicit one that stability held far shorter
+    !> than the error would, or three calm ones of the implicit one.
+    subroutine choose_method(self, tried, stable)
         class(continuous), intent(inout) :: self
         type(trial), intent(in) :: tried
+        real(dp), intent(in) :: stable   !! length of the longest step that is [T]
         integer, parameter :: most_stiff = 15, most_calm = 6, few_calm = 3
+        real(dp), parameter :: far = 4.0_dp
 
         if (self%block%equations%surface%traits%stiff) return
         if (self%implicit) then
@@ -530,7 +584,7 @@ contains
             if (self%calm < few_calm) return
             self%implicit = .false.
         else
-            if (tried%stiffness > self%pair%bound) then
+            if (tried%stiffness > self%pair%bound .or. self%dt / far > stable) then
                 self%stiff = self%stiff + 1
                 self%calm = 0
             else

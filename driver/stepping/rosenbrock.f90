@@ -10,7 +10,7 @@ module rosenbrock
     implicit none
     private
 
-    public :: chain_stepper, rosenbrock_step
+    public :: chain_stepper, growth_rate, rosenbrock_step
 
     integer, parameter :: stages = 6
     real(dp), parameter :: gamma = 0.25_dp
@@ -59,6 +59,18 @@ module rosenbrock
             real(dp), intent(inout) :: a(lda, n)
             integer, intent(out) :: ipiv(n), info
         end subroutine dgetrf
+
+        !> LAPACK: eigenvalues of a general matrix.
+        pure subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, &
+            info)
+            import :: dp
+            implicit none
+            character(len=1), intent(in) :: jobvl, jobvr
+            integer, intent(in) :: n, lda, ldvl, ldvr, lwork
+            real(dp), intent(inout) :: a(lda, n)
+            real(dp), intent(out) :: wr(n), wi(n), vl(ldvl, n), vr(ldvr, n), work(lwork)
+            integer, intent(out) :: info
+        end subroutine dgeev
     end interface
 
 contains
@@ -314,5 +326,31 @@ contains
         call equations%rates(t + step, y, dy, failed)
         by_time = (dy - first) / step
     end subroutine differentiate
+
+    !> How fast the smallest disturbance grows [1/T]; 0: it does not, but for what differences tell.
+    pure function growth_rate(equations, t, y, first, natural) result(rate)
+        type(slider_equations), intent(in) :: equations
+        real(dp), intent(in) :: t, y(unknowns), first(unknowns)   !! the last: rates at y
+        real(dp), intent(in) :: natural(controlled)
+        real(dp) :: rate
+        real(dp), parameter :: noise = 1.0e-6_dp   !! part of the size of the derivative
+        real(dp) :: j(unknowns, controlled), by_time(unknowns), re(controlled), im(controlled), &
+            left(1, controlled), right(1, controlled), work(4 * controlled)
+        logical :: failed
+        integer :: n, i, info
+
+        rate = 0.0_dp
+        n = equations%acting
+        call differentiate(n, equations, t, 0.0_dp, y, first, natural, j, by_time, failed)
+        if (failed) return
+        do i = 1, n
+            j(i, :n) = j(i, :n) * natural(:n) / natural(i)
+        end do
+        associate (most => maxval(sum(abs(j(:n, :n)), dim=2)))
+            call dgeev('N', 'N', n, j, unknowns, re, im, left, 1, right, 1, work, size(work), info)
+            if (info == 0) rate = maxval(re(:n))
+            if (rate < noise * most) rate = 0.0_dp
+        end associate
+    end function growth_rate
 
 end module rosenbrock

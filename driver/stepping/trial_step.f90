@@ -4,7 +4,7 @@ module trial_step
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
     use slider_rates, only : damped, dissipated, elastic, extension, phase_slide, ratio, slip, &
-        unknowns, velocity
+        slider_equations, unknowns, velocity
     implicit none
     private
 
@@ -29,6 +29,7 @@ contains
         type(trial), intent(inout) :: tried
         logical :: failed
 
+        if (block%equations%surface%traits%memory == 1) call limit_share(block%equations, t, tried)
         call block%equations%rates(t + tried%h, tried%y, tried%last, failed)
         if (failed) tried%error = huge(tried%error)
         if (wild(block, weight, tried)) tried%error = max(tried%error, 2.0_dp**4)
@@ -37,6 +38,24 @@ contains
             weight, tried)
         if (block%equations%follows_share()) call mobilise(block, tried)
     end subroutine look_at
+
+    !> What a subloading surface carries beyond its full strength is an error, which no slip would
+    !> take back: it slips by that.
+    pure subroutine limit_share(eq, t, tried)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: t   !! of the step's start [T]
+        type(trial), intent(inout) :: tried
+        real(dp) :: v_drive, pressure, pressure_rate, most
+
+        if (eq%phase /= phase_slide .or. eq%damper > 0.0_dp) return
+        call eq%inputs(t + tried%h, tried%y, v_drive, pressure, pressure_rate)
+        most = eq%full_strength(tried%y, pressure) / eq%alpha
+        if (abs(tried%y(elastic)) <= most) return
+        tried%y(slip) = tried%y(slip) + (abs(tried%y(elastic)) - most)
+        tried%y(dissipated) = tried%y(dissipated) + 0.5_dp * eq%alpha * (tried%y(elastic)**2 &
+            - most**2)
+        tried%y(elastic) = sign(most, tried%y(elastic))
+    end subroutine limit_share
 
     !> R of a surface beside a damper follows the traction so closely, while it is small, that the
     !> estimate of the error does not see how much slip that takes: the step may change its rate

@@ -613,6 +613,62 @@ class ContinuousTime(Columns):
                             truth = pulls[i] + ((t - 1.2) / h - i) * (pulls[i + 1] - pulls[i])
                             self.assertAlmostEqual(abs(force), truth, delta=3e-6)
 
+    QUIET = ("&friction alpha_n=1e4, alpha_t=1e4, {friction} /\n&slider mass=1, stiffness=100, damping={damping}, normal_traction=10 /\n"
+             '&drive velocity={v} /\n&time t_end={end}, rtol=1e-5 /\n')
+
+    def test_slow_drives_are_stepped_over_while_the_block_swings_below_the_tolerance(self):
+        # explicit steps would swing with it, 1e14 times
+        v, end = 1e-10, 1e12
+        for damping in (0, 0.01, 1, 30):
+            for contact in ('elastic', 'rigid'):
+                for friction in ("law='coulomb', mu=0.3", "law='slip_weakening', mu_s=0.3, mu_k=0.2, d_c=0.1"):
+                    with self.subTest(damping=damping, contact=contact, friction=friction):
+                        text = self.QUIET.format(friction=f"{friction}, contact='{contact}'", damping=damping, v=v, end=end)
+                        run = self.run_columns(text)
+                        self.assertLess(len(run['time']), 600)
+                        carried = 2 if 'weakening' in friction else 3
+                        for t, force in zip(run['time'], run['spring_force']):
+                            if t < 2.9e8:
+                                stiffness = 100 if contact == 'rigid' else 100 * 1e4 / (100 + 1e4)
+                                self.assertAlmostEqual(force, stiffness * v * t, delta=1e-5 * 3)
+                        self.assertAlmostEqual(run['friction_force'][-1], carried, delta=1e-5)
+                        self.assertAlmostEqual(run['displacement'][-1], v * end - carried / 100, delta=1e-5)
+                        self.assertAlmostEqual(run['velocity'][-1] / v, 1, delta=1e-3)
+
+    def test_a_block_that_loads_slowly_and_slips_a_little_comes_to_rest(self):
+        # each swing lets a subloading surface slip: one that the steps keep up would let the traction fall
+        text = self.QUIET.format(friction="law='subloading', mu_s=0.3, mu_k=0.2, kappa=300, xi=1e-6, m=3000", damping=0.05, v=1e-8,
+                                 end=2e7).replace('rtol=1e-5', 'rtol=1e-6')
+        run = self.run_columns(text)
+        self.assertLess(len(run['time']), 100_000)   # 5 slip events and their ringing
+        events = self.rows('case_out/case_events.csv')
+        self.assertEqual(len(events), 5)
+        period = [float(row['recurrence_time']) * 1e-8 for row in events[1:]]
+        self.assertAlmostEqual(sum(period) / 4, 0.0094, delta=3e-4)   # 0.00938 at rtol = 1e-9 and a drive of 1e-6
+
+    def test_a_subloading_surface_carries_no_more_than_its_strength(self):
+        # errors of long steps beyond it added up, to 50 times the tolerance
+        for rtol in (3e-4, 1e-4, 3e-5, 1e-5):
+            run = self.run_columns(f"""&friction law='subloading', alpha_n=1000, alpha_t=1000, mu_s=0.4, mu_k=0.2, kappa=10, xi=1, m=1000 /
+                &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction=10 /
+                &drive velocity=5 /
+                &time t_end=2, rtol={rtol} /""")
+            for force, mu in zip(run['friction_force'], run['mu']):
+                self.assertLess(force, 10 * mu + 4 * rtol)
+            self.assertAlmostEqual(run['friction_force'][-1], 10 * (10 * 5 * 0.2 + 0.4) / 51, delta=4 * rtol)
+
+    def test_sliding_that_is_not_steady_is_not_stepped_over(self):
+        # a disturbance of a part of the drive's velocity, which no tolerance sees, grows within seconds
+        period = []
+        for v in (1e-6, 1e-10):
+            text = self.QUIET.format(friction="law='static_kinetic', mu_s=0.3, mu_k=0.2, d_c=100", damping=1, v=v, end=0.1 / v)
+            run = self.run_columns(text)
+            self.assertLess(len(run['time']), 40_000)
+            onsets = [float(row['onset']) * v for row in self.rows('case_out/case_events.csv')]
+            self.assertGreater(len(onsets), 3)
+            period.append(onsets[3] - onsets[2])
+        self.assertAlmostEqual(period[0] / period[1], 1, delta=1e-3)
+
     def test_what_leaves_the_velocity_of_a_block_without_mass_open_is_refused(self):
         for law, constants in (('coulomb', 'mu = 0.6'), ('slip_weakening', 'mu_s = 0.6, mu_k = 0.4, d_c = 1')):
             self.refused(self.MASSLESS.format(law=law, constants=constants, contact='rigid', damping=0, sign=''),
