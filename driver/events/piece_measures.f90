@@ -16,7 +16,7 @@ module piece_measures
         logical :: seen = .false.      !! there was a normal force
         real(dp) :: peak = 0.0_dp, least = 0.0_dp, last = 0.0_dp
     contains
-        procedure :: take, visit
+        procedure :: take, widen, visit
     end type friction_range
 
     !> What a piece tells beside the one before. With ratio r of the speeds, rate-and-state
@@ -49,6 +49,17 @@ contains
         self%least = min(self%least, friction)
         self%last = friction
     end subroutine take
+
+    !> Takes in the least and the largest value since the last instant.
+    pure subroutine widen(self, range)
+        class(friction_range), intent(inout) :: self
+        real(dp), intent(in) :: range(2)
+
+        if (range(1) > range(2)) return   ! none
+        if (.not. self%seen) call self%take(range(2))
+        self%least = min(self%least, range(1))
+        self%peak = max(self%peak, range(2))
+    end subroutine widen
 
     !> Of all pieces. Where there were events there is no steady value, and nothing is told.
     pure function read_off(ranges, events, velocity, duration) result(effects)

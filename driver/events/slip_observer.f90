@@ -3,7 +3,9 @@
 module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
-    use friction_mod, only : friction_facts, law_facts, onset_gradual, statev_mu
+    use friction_course, only : course
+    use friction_mod, only : facts => law_facts, friction_facts, onset_gradual, statev_mu
+    use law_facts, only : strength_at
     use loading_programme, only : programme
     use piece_measures, only : friction_range
     use run_observer, only : observer, step_news
@@ -34,7 +36,8 @@ module slip_observer
         real(dp), allocatable :: least_load(:)         !! normal traction that tells friction there
         logical :: prescribed = .true.                 !! the normal traction, not an answer
         logical :: rigid = .false.                     !! no contact spring: slip stops at once
-        real(dp) :: cohesion = 0.0_dp, cap = 0.0_dp    !! of friction [F/L^2]
+        logical :: one_block = .true.
+        type(facts) :: law
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -47,7 +50,6 @@ contains
     subroutine prepare(self, run)
         class(slip_watch), intent(inout) :: self
         type(settings), intent(in) :: run
-        type(law_facts) :: law
 
         self%drive = run%drive
         self%stiffness = run%stiffness
@@ -57,16 +59,15 @@ contains
         self%finder%stiffness = run%stiffness
         self%finder%impedance = max(run%damping, sqrt(run%stiffness * run%mass))
         self%finder%inertia = run%mass > 0.0_dp
-        law = friction_facts(run%props)
-        self%coefficient = law%typical_coefficient
+        self%law = friction_facts(run%props)
+        self%coefficient = self%law%typical_coefficient
         call self%finder%give_sense(run%loading_sense(), abs(run%drive%first_velocity()))
         self%area = run%area
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
         self%sense = senses(run%drive, run%loading_sense())
         self%prescribed = .not. run%across%free()
-        self%rigid = run%rigid_contact .and. law%traits%onset /= onset_gradual
-        self%cohesion = law%cohesion
-        self%cap = law%shear_cap
+        self%rigid = run%rigid_contact .and. self%law%traits%onset /= onset_gradual
+        self%one_block = run%chain%n_blocks == 1
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -135,7 +136,7 @@ contains
 
         aside = round_off * (new%time - old%time)
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
-        if (new%normal <= self%least_load(i)) return
+        if (max(old%normal, new%normal) <= self%least_load(i)) return
         slides = now%slip > before%slip
         way = new%x(1) - old%x(1)
         if (.not. self%friction(i)%seen .and. old%time > self%drive%start(i) - aside) then
@@ -150,6 +151,8 @@ contains
                 end if
             end if
         end if
+        if (load_changes(self, i)) call find_extremes(self, i, old, new, before, now)
+        if (new%normal <= self%least_load(i)) return
         call find_turn(self, i, old, new, before, now, between, turns)
         if (turns) call self%friction(i)%take(between)
         if (self%rigid .and. slides .and. .not. abs(new%v(1)) > 0.0_dp) then
@@ -158,6 +161,54 @@ contains
         end if
         call self%friction(i)%take(over_load(self, i, mean_of(new), new%normal))
     end subroutine measure
+
+    !> Does the normal traction of a block change within a piece?
+    pure function load_changes(self, i) result(yes)
+        class(slip_watch), intent(in) :: self
+        integer, intent(in) :: i   !! piece
+        logical :: yes
+
+        yes = self%one_block .and. (self%drive%amplitude > 0.0_dp &
+            .or. abs(self%drive%normal_rate(i)) > 0.0_dp .or. .not. self%prescribed)
+    end function load_changes
+
+    !> Friction over a normal traction that changes may be largest or least within the step.
+    pure subroutine find_extremes(self, i, old, new, before, now)
+        class(slip_watch), intent(inout) :: self
+        integer, intent(in) :: i                  !! piece
+        type(slider_state), intent(in) :: old, new
+        type(moment), intent(in) :: before, now   !! the same two
+        type(course) :: step
+        real(dp) :: range(2)
+
+        step%start = old%time
+        step%length = new%time - old%time
+        step%slides = now%slip > before%slip
+        step%prescribed = self%prescribed
+        step%load = [old%normal, new%normal]
+        if (self%prescribed) step%load(1) = self%drive%normal_traction(old%time, i)
+        if (step%slides .and. abs(step%load(1) - old%normal) > round_off * new%normal .and. .not. &
+            self%rigid) return   ! a sudden load: what comes of it at once is not known
+        step%load_rate = -self%law%alpha_n * [old%v_n, new%v_n]
+        step%law = self%law
+        step%force = self%sense(i) * [old%friction(1), new%friction(1)] / self%area
+        step%coefficient = [old%statev(1, statev_mu), new%statev(1, statev_mu)]
+        if (self%rigid) then
+            step%rate = self%sense(i) * [before%rate, now%rate] / self%area
+            if (step%slides) step%force = self%sense(i) * sign(strength_at(self%law, &
+                step%coefficient, step%load), new%x(1) - old%x(1))
+        else
+            step%rate = self%sense(i) * (self%law%alpha_t * [old%v, new%v] + self%law%damping &
+                * [old%a, new%a])
+            if (self%law%traits%onset == onset_gradual .and. self%law%traits%memory == 2) where &
+                (step%load > 0.0_dp) step%coefficient = max(0.0_dp, abs(step%force) &
+                - self%law%cohesion) / step%load
+        end if
+        range = [huge(range), -huge(range)]
+        if (self%friction(i)%seen) range = [self%friction(i)%least, self%friction(i)%peak]
+        call step%extremes(self%drive, i, self%least_load(i), range)
+        call self%friction(i)%widen(range)
+    end subroutine find_extremes
 
     !> Where the drive spring turns within a step, friction does, unless inertia or a damper has a
     !> say in it.
@@ -193,8 +244,7 @@ contains
         real(dp), intent(in) :: way    !! that it slides [L]
         real(dp) :: force              !! [F]
 
-        force = sign(self%area * min(state%statev(1, statev_mu) * load + self%cohesion, self%cap), &
-            way)
+        force = sign(self%area * strength_at(self%law, state%statev(1, statev_mu), load), way)
     end function sliding
 
     !> Friction coefficient in the sense of the loading of a piece.

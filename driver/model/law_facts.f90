@@ -8,7 +8,7 @@ module law_facts
     private
 
     public :: cohesion_of_each, has_r, internal_variable, pressure_effect, pressure_effects, &
-        typical_strength
+        strength_at, typical_strength
 
     !> Of `pressure_effect`, where the contact counts as open before its pressure vanishes: below
     !> 8e-4 of the largest [-].
@@ -47,6 +47,17 @@ contains
         law = friction_facts(props)
         strength = law%typical_coefficient * pressure + law%cohesion
     end function typical_strength
+
+    !> What a surface that slides carries under a pressure, from its friction coefficient, as
+    !> `statev` has it [F/L^2].
+    elemental function strength_at(law, mu, pressure) result(strength)
+        type(facts), intent(in) :: law
+        real(dp), intent(in) :: mu         !! [-]
+        real(dp), intent(in) :: pressure   !! >= 0 [F/L^2]
+        real(dp) :: strength
+
+        strength = min(law%shear_cap, mu * pressure + law%cohesion)
+    end function strength_at
 
     !> How much the logarithm of what a law remembers falls with that of the pressure.
     !> Of several blocks it is the largest.

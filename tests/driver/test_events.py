@@ -274,6 +274,35 @@ class Pieces(Program):
         self.assertEqual((result.returncode, result.stderr), (0, ''))
         return [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_pieces.csv')]
 
+    def rows_of_pieces(self, text):
+        result = self.run_text(text, '--no-plot')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return [{key: float(value) for key, value in row.items()} for row in self.rows('case_out/case_pieces.csv')]
+
+    def test_friction_over_a_normal_traction_that_varies_is_largest_and_least_within_the_steps(self):
+        # a surface with cohesion that slides carries mu + c/p of p, one that holds f/p: largest and least between the ends of
+        # steps, also where the normal traction passes what still tells friction, 0.001 of its largest
+        mu, cohesion, mean = 0.4, 0.05, 2.0
+        for amplitude in (1.0, 1.98, 2.0):
+            least = max(mean - amplitude, 1e-3 * (mean + amplitude))
+            for contact in ('rigid', 'elastic'):
+                for law in (f"'coulomb', mu={mu}", f"'slip_weakening', mu_s={mu}, mu_k={mu}, d_c=1"):
+                    for rtol in (1e-5, 1e-7):
+                        with self.subTest(amplitude=amplitude, contact=contact, law=law, rtol=rtol):
+                            slides = self.rows_of_pieces(f"""
+                                &friction law={law}, alpha_n=1e4, alpha_t=1e4, cohesion={cohesion}, contact='{contact}' /
+                                &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction={mean} /
+                                &drive velocity=1, 1, duration=60, 1, normal_amplitude={amplitude}, normal_frequency=0.05 /
+                                &time t_end=60, rtol={rtol} /""")[0]
+                            self.assertAlmostEqual(slides['peak_friction'] / (mu + cohesion / least), 1, delta=2e-4)
+        for contact in ('rigid', 'elastic'):
+            holds = self.rows_of_pieces(f"""&friction law='coulomb', alpha_n=1e4, alpha_t=1e4, mu=0.5, contact='{contact}' /
+                &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction=2 /
+                &drive velocity=1, 0, duration=0.2, 100, normal_amplitude=1, normal_frequency=0.05 /
+                &time t_end=100.2, rtol=1e-5 /""")[1]
+            self.assertAlmostEqual(holds['peak_friction'], 0.2, delta=1e-4)
+            self.assertAlmostEqual(holds['least_friction'], 0.2 / 3, delta=1e-4)
+
     def friction_by_runge_kutta(self, drive, stiffness, step=1e-2):
         """Peak, least and last friction in each piece: friction law and spring as two ordinary differential equations."""
         k = 1 / (1 / stiffness + 1 / self.SPRINGS)
