@@ -105,13 +105,15 @@ class Switched:
         return {self.number_of[mutant]: mutant for statement in self.statements if statement.first not in self.plain
                 for mutant in statement.mutants if mutant not in self.alone}
 
-    def write(self):
-        """The lines, and for each whom it belongs to: a statement, a mutant, whether it is a probe."""
+    def write(self, changed=None):
+        """The lines, and for each whom it belongs to: a statement, a mutant, whether it is a probe; or with one mutant for good."""
         out = []
         for statement in self.statements:
             mutants = [mutant for mutant in statement.mutants if mutant not in self.alone]
             lines = None
-            if mutants and statement.first not in self.plain:
+            if changed in statement.mutants:
+                lines = [(statement.text(changed), None, False)]
+            elif mutants and statement.first not in self.plain:
                 lines = self.variants(statement, mutants)
             if lines is None:
                 self.plain.add(statement.first)
