@@ -115,8 +115,8 @@ contains
         integer(c_int64_t) :: low, high, number, out_of_bounds
         integer :: i
 
-        low = max(bits(lower), bits(least))
         high = min(bits(upper), bits(most))
+        low = min(max(bits(lower), bits(least)), high)   ! above it, differences may overflow
         if (lower > 0.0_wp) then
             do i = 1, n
                 number = bits(from(i))
