@@ -4,7 +4,8 @@ module slip_observer
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use archive_file, only : archive
     use friction_course, only : course
-    use friction_mod, only : facts => law_facts, friction_facts, onset_gradual, statev_mu
+    use friction_mod, only : facts => law_facts, friction_facts, onset_gradual, statev_mu, &
+        statev_status
     use law_facts, only : strength_at
     use loading_programme, only : programme
     use piece_measures, only : friction_range
@@ -37,6 +38,7 @@ module slip_observer
         logical :: prescribed = .true.                 !! the normal traction, not an answer
         logical :: rigid = .false.                     !! no contact spring: slip stops at once
         logical :: one_block = .true.
+        logical :: jumps = .false.                     !! friction drops as slip begins
         type(facts) :: law
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
@@ -68,6 +70,9 @@ contains
         self%prescribed = .not. run%across%free()
         self%rigid = run%rigid_contact .and. self%law%traits%onset /= onset_gradual
         self%one_block = run%chain%n_blocks == 1
+        self%jumps = run%adaptive .and. .not. (run%newmark .or. run%rigid_contact) .and. &
+            run%one_by_itself() .and. self%law%traits%onset /= onset_gradual .and. .not. &
+            self%law%damping > 0.0_dp
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -153,6 +158,8 @@ contains
         end if
         if (load_changes(self, i)) call find_extremes(self, i, old, new, before, now)
         if (new%normal <= self%least_load(i)) return
+        if (slides .and. drops(self, i, old)) call self%friction(i)%take(over_load(self, i, &
+            held(self, old, new), new%normal))
         call find_turn(self, i, old, new, before, now, between, turns)
         if (turns) call self%friction(i)%take(between)
         if (self%rigid .and. slides .and. .not. abs(new%v(1)) > 0.0_dp) then
@@ -161,6 +168,28 @@ contains
         end if
         call self%friction(i)%take(over_load(self, i, mean_of(new), new%normal))
     end subroutine measure
+
+    !> Has a step with slip begun with a contact that stuck? Then friction dropped at its end.
+    pure function drops(self, i, old) result(yes)
+        class(slip_watch), intent(in) :: self
+        integer, intent(in) :: i   !! piece
+        type(slider_state), intent(in) :: old
+        logical :: yes
+        integer, parameter :: sticks = 1
+
+        yes = self%jumps
+        if (yes) yes = nint(old%statev(1, statev_status)) == sticks
+        if (yes) yes = old%time > self%drive%start(i) .or. is_gradual(self%drive, i)
+    end function drops
+
+    !> The friction of such a step before: the contact spring went with the block.
+    pure function held(self, old, new) result(force)
+        class(slip_watch), intent(in) :: self
+        type(slider_state), intent(in) :: old, new
+        real(dp) :: force   !! [F]
+
+        force = old%friction(1) + self%area * self%law%alpha_t * (new%x(1) - old%x(1))
+    end function held
 
     !> Does the normal traction of a block change within a piece?
     pure function load_changes(self, i) result(yes)
@@ -192,6 +221,10 @@ contains
         step%load_rate = -self%law%alpha_n * [old%v_n, new%v_n]
         step%law = self%law
         step%force = self%sense(i) * [old%friction(1), new%friction(1)] / self%area
+        if (step%slides .and. drops(self, i, old)) then
+            step%slides = .false.
+            step%force(2) = self%sense(i) * held(self, old, new) / self%area
+        end if
         step%coefficient = [old%statev(1, statev_mu), new%statev(1, statev_mu)]
         if (self%rigid) then
             step%rate = self%sense(i) * [before%rate, now%rate] / self%area

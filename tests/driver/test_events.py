@@ -303,6 +303,18 @@ class Pieces(Program):
             self.assertAlmostEqual(holds['peak_friction'], 0.2, delta=1e-4)
             self.assertAlmostEqual(holds['least_friction'], 0.2 / 3, delta=1e-4)
 
+    def test_friction_before_it_drops_is_a_peak_however_long_the_step_before(self):
+        # friction drops within the contact spring at once: its peak was that of the row before, 0.25 or less in a slow drive
+        for law in ("'static_kinetic', d_c=100", "'slip_weakening', d_c=1e-5", "'slip_weakening_healing', d_c=1e-5, xi=1"):
+            for v in (1e-2, 1e-6):
+                for sense in ('', '-'):
+                    with self.subTest(law=law, velocity=v, sense=sense):
+                        piece = self.rows_of_pieces(f"""&friction law={law}, mu_s=0.3, mu_k=0.2, alpha_n=1e4, alpha_t=1e4 /
+                            &slider mass=1, stiffness=100, normal_traction=10, damping=3 /
+                            &drive velocity={sense}{v}, {sense}{v}, duration={0.05 / v}, 1 /
+                            &time t_end={0.05 / v}, rtol=1e-5 /""")[0]
+                        self.assertAlmostEqual(piece['peak_friction'], 0.3, delta=2e-5)
+
     def friction_by_runge_kutta(self, drive, stiffness, step=1e-2):
         """Peak, least and last friction in each piece: friction law and spring as two ordinary differential equations."""
         k = 1 / (1 / stiffness + 1 / self.SPRINGS)
