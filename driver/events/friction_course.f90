@@ -3,7 +3,7 @@
 !>
 !> A surface that slides carries its strength, or, while slip comes gradually, a share of it, and
 !> what it remembers changes little in a step: share and friction coefficient are linear between the
-!> ends. What sticks follows its spring, by cubic interpolation.
+!> ends. What sticks follows its spring, by cubic interpolation, up to its strength.
 module friction_course
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : facts => law_facts
@@ -17,6 +17,7 @@ module friction_course
     type :: course
         real(dp) :: start = 0.0_dp, length = 0.0_dp   !! of the step [T]
         logical :: slides = .false.
+        logical :: yields = .true.            !! what sticks carries no more than its strength
         real(dp) :: force(2) = 0.0_dp         !! of friction over the area, at the ends [F/L^2]
         real(dp) :: rate(2) = 0.0_dp          !! likewise, of a surface that sticks [F/L^2/T]
         real(dp) :: coefficient(2) = 0.0_dp   !! of friction [-]
@@ -109,6 +110,8 @@ contains
             force = linear(shares) * strength_at(self%law, linear(self%coefficient), load)
         else
             force = cubic(self%force, self%length * self%rate, share)
+            if (self%yields) force = sign(min(abs(force), strength_at(self%law, &
+                maxval(self%coefficient), load)), force)
         end if
         friction = force / load
 

@@ -220,6 +220,7 @@ contains
             self%rigid) return   ! a sudden load: what comes of it at once is not known
         step%load_rate = -self%law%alpha_n * [old%v_n, new%v_n]
         step%law = self%law
+        step%yields = self%law%traits%onset /= onset_gradual .or. self%law%traits%memory /= 2
         step%force = self%sense(i) * [old%friction(1), new%friction(1)] / self%area
         if (step%slides .and. drops(self, i, old)) then
             step%slides = .false.
@@ -233,9 +234,8 @@ contains
         else
             step%rate = self%sense(i) * (self%law%alpha_t * [old%v, new%v] + self%law%damping &
                 * [old%a, new%a])
-            if (self%law%traits%onset == onset_gradual .and. self%law%traits%memory == 2) where &
-                (step%load > 0.0_dp) step%coefficient = max(0.0_dp, abs(step%force) &
-                - self%law%cohesion) / step%load
+            if (.not. step%yields) where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, &
+                abs(step%force) - self%law%cohesion) / step%load
         end if
         range = [huge(range), -huge(range)]
         if (self%friction(i)%seen) range = [self%friction(i)%least, self%friction(i)%peak]

@@ -303,6 +303,17 @@ class Pieces(Program):
             self.assertAlmostEqual(holds['peak_friction'], 0.2, delta=1e-4)
             self.assertAlmostEqual(holds['least_friction'], 0.2 / 3, delta=1e-4)
 
+    def test_a_contact_that_sticks_in_a_long_step_carries_no_more_than_its_strength(self):
+        # a drive that slows down lets the contact stick at its strength: between the ends of that step it was told to carry 0.614
+        for sense in ('', '-'):
+            with self.subTest(sense=sense):
+                pieces = self.rows_of_pieces(f"""&friction law='coulomb', mu=0.609, alpha_n=3e4, alpha_t=12.634 /
+                    &slider mass=0, stiffness=1.0674, damping=0.028, normal_traction=31.3 /
+                    &drive velocity={sense}1.158, {sense}0.0622, duration=16.4536, 489.4, normal_amplitude=0.6335,
+                           normal_frequency=0.01607, normal_phase=0.7208 /
+                    &time t_end=500, rtol=1e-5 /""")
+                self.assertLess(pieces[1]['peak_friction'], 0.609 + 1e-5)
+
     def test_friction_before_it_drops_is_a_peak_however_long_the_step_before(self):
         # friction drops within the contact spring at once: its peak was that of the row before, 0.25 or less in a slow drive
         for law in ("'static_kinetic', d_c=100", "'slip_weakening', d_c=1e-5", "'slip_weakening_healing', d_c=1e-5, xi=1"):
