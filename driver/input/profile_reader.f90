@@ -7,6 +7,7 @@ module profile_reader
     use column_keys, only : refuse_table
     use csv_table, only : column_request, csv => table, read_table, table_reader
     use grid_map, only : map_on_grid, nodes_up_to
+    use lapack_interface, only : dlasrt
     use namelist_input, only : namelist_file
     use namelist_parser, only : value_token
     use number_text, only : full_row
@@ -22,18 +23,6 @@ module profile_reader
         character(len=:), allocatable :: group, key   !! where the input names the file
         type(map_on_grid) :: map                      !! of one quantity
     end type profile
-
-    interface
-        !> LAPACK: sorts numbers.
-        pure subroutine dlasrt(id, n, d, info)
-            import :: dp
-            implicit none
-            character(len=1), intent(in) :: id   !! 'I': they increase
-            integer, intent(in) :: n
-            real(dp), intent(inout) :: d(n)
-            integer, intent(out) :: info
-        end subroutine dlasrt
-    end interface
 
 contains
 

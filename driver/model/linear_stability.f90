@@ -3,6 +3,7 @@
 module linear_stability
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : prop_alpha_n, prop_alpha_t
+    use lapack_interface, only : dgebal, dgeev
     use smooth_function, only : find_root, function_of_one, values
     use steady_sliding, only : contact_response, find_steady_sliding, sliding_case
     implicit none
@@ -57,31 +58,6 @@ module linear_stability
     contains
         procedure :: at => growth_at
     end type growth_over
-
-    interface
-        !> LAPACK: eigenvalues of a general matrix.
-        subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
-            import :: dp
-            implicit none
-            character(len=1), intent(in) :: jobvl, jobvr
-            integer, intent(in) :: n, lda, ldvl, ldvr, lwork
-            real(dp), intent(inout) :: a(lda, n)
-            real(dp), intent(out) :: wr(n), wi(n), vl(ldvl, n), vr(ldvr, n), work(lwork)
-            integer, intent(out) :: info
-        end subroutine dgeev
-
-        !> LAPACK: the units, as powers of two, in which the rows and columns of a matrix are most
-        !> alike, and the matrix in these.
-        subroutine dgebal(job, n, a, lda, ilo, ihi, scale, info)
-            import :: dp
-            implicit none
-            character(len=1), intent(in) :: job
-            integer, intent(in) :: n, lda
-            real(dp), intent(inout) :: a(lda, n)
-            real(dp), intent(out) :: scale(n)
-            integer, intent(out) :: ilo, ihi, info
-        end subroutine dgebal
-    end interface
 
 contains
 

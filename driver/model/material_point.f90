@@ -6,6 +6,7 @@ module material_point
     use friction_mod, only : friction_message, friction_no_convergence, &
         friction_snap_back, friction_update, prop_alpha_n, prop_alpha_t, statev_mu, statev_size, &
         statev_u_n
+    use lapack_interface, only : dgesv
     implicit none
     private
 
@@ -35,17 +36,6 @@ module material_point
     real(dp), parameter :: tolerance = 1.0e-12_dp     !! of a traction, relative to the largest
     integer, parameter :: max_iterations = 50
     integer, parameter :: max_halvings = 12           !! of a Newton step, and of an increment
-
-    interface
-        !> LAPACK: linear system by Gaussian elimination with partial pivoting.
-        pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-            import :: dp
-            implicit none
-            integer, intent(in) :: n, nrhs, lda, ldb
-            real(dp), intent(inout) :: a(lda, *), b(ldb, *)
-            integer, intent(out) :: ipiv(*), info
-        end subroutine dgesv
-    end interface
 
 contains
 

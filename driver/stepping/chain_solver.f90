@@ -4,6 +4,7 @@
 !> for rings, by LAPACK.
 module chain_solver
     use, intrinsic :: iso_fortran_env, only : dp => real64
+    use lapack_interface, only : dgtsv
     implicit none
     private
 
@@ -17,17 +18,6 @@ module chain_solver
     contains
         procedure :: make_room, solve
     end type chain_matrix
-
-    interface
-        !> LAPACK: tridiagonal system by Gaussian elimination with partial pivoting.
-        pure subroutine dgtsv(n, nrhs, dl, d, du, b, ldb, info)
-            import :: dp
-            implicit none
-            integer, intent(in) :: n, nrhs, ldb
-            real(dp), intent(inout) :: dl(*), d(*), du(*), b(ldb, *)
-            integer, intent(out) :: info
-        end subroutine dgtsv
-    end interface
 
 contains
 

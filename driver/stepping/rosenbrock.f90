@@ -5,6 +5,7 @@ module rosenbrock
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_rates, only : chain_equations
     use chain_solver, only : chain_matrix
+    use lapack_interface, only : dgeev, dgetrf
     use slider_rates, only : along, controlled, elastic, extension, ratio, slider_equations, &
         unknowns, velocity
     implicit none
@@ -49,29 +50,6 @@ module rosenbrock
         procedure :: make_room, step
         procedure, private :: factorise_all, solve_all
     end type chain_stepper
-
-    interface
-        !> LAPACK: factors of a matrix by Gaussian elimination with partial pivoting.
-        pure subroutine dgetrf(m, n, a, lda, ipiv, info)
-            import :: dp
-            implicit none
-            integer, intent(in) :: m, n, lda
-            real(dp), intent(inout) :: a(lda, n)
-            integer, intent(out) :: ipiv(n), info
-        end subroutine dgetrf
-
-        !> LAPACK: eigenvalues of a general matrix.
-        pure subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, &
-            info)
-            import :: dp
-            implicit none
-            character(len=1), intent(in) :: jobvl, jobvr
-            integer, intent(in) :: n, lda, ldvl, ldvr, lwork
-            real(dp), intent(inout) :: a(lda, n)
-            real(dp), intent(out) :: wr(n), wi(n), vl(ldvl, n), vr(ldvr, n), work(lwork)
-            integer, intent(out) :: info
-        end subroutine dgeev
-    end interface
 
 contains
 
