@@ -9,6 +9,7 @@ module friction_course
     use friction_mod, only : facts => law_facts
     use law_facts, only : strength_at
     use loading_programme, only : programme
+    use slip_events, only : cubic
     implicit none
     private
 
@@ -125,15 +126,5 @@ contains
         end function linear
 
     end subroutine friction_at
-
-    !> Of the values and rates at both ends of an interval of length 1.
-    pure function cubic(values, rates, x) result(value)
-        real(dp), intent(in) :: values(2), rates(2), x
-        real(dp) :: value, change
-
-        change = values(2) - values(1)
-        value = values(1) + x * change + x * (x - 1.0_dp) * ((1.0_dp - 2.0_dp * x) * change &
-            + (x - 1.0_dp) * rates(1) + x * rates(2))
-    end function cubic
 
 end module friction_course

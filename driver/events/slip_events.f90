@@ -23,7 +23,7 @@ module slip_events
     implicit none
     private
 
-    public :: event_finder, moment, slip_event, turning_point
+    public :: cubic, event_finder, moment, slip_event, turning_point
 
     !> A harmonic oscillation that just sticks reaches twice the drive's speed, forced modulation of
     !> stable sliding a little more than once.
@@ -437,19 +437,27 @@ contains
         type(moment), intent(in) :: a, b
         real(dp), intent(in) :: time   !! [T]
         type(moment) :: between
-        real(dp) :: s, dt, change
+        real(dp) :: s, dt
 
         dt = b%time - a%time
         s = (time - a%time) / dt
-        change = b%force - a%force
         between%time = time
-        between%force = a%force + s * (change + (1.0_dp - s) * ((1.0_dp - s) * (dt * a%rate &
-            - change) - s * (dt * b%rate - change)))
+        between%force = cubic([a%force, b%force], dt * [a%rate, b%rate], s)
         between%slip = a%slip + s * (b%slip - a%slip)
         between%velocity = a%velocity + s * (b%velocity - a%velocity)
         between%drive = a%drive + s * (b%drive - a%drive)
         between%holds = a%holds + s * (b%holds - a%holds)
     end function between_moments
+
+    !> Of the values and rates at both ends of an interval of length 1.
+    pure function cubic(values, rates, x) result(value)
+        real(dp), intent(in) :: values(2), rates(2), x
+        real(dp) :: value, change
+
+        change = values(2) - values(1)
+        value = values(1) + x * change + x * (x - 1.0_dp) * ((1.0_dp - 2.0_dp * x) * change &
+            + (x - 1.0_dp) * rates(1) + x * rates(2))
+    end function cubic
 
     !> Reads or writes what has to be kept to go on.
     subroutine visit(self, file)

@@ -21,6 +21,7 @@ module continuous_steps
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
+    use swing_bound, only : oscillation, oscillation_of
     use trial_step, only : look_at, trial
     implicit none
     private
@@ -31,14 +32,6 @@ module continuous_steps
     !> Part of the time that no step is shorter than.
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
-
-    !> How a block swings on springs.
-    type :: oscillation
-        real(dp) :: radian = huge(1.0_dp)   !! time of one; huge where it does not swing [T]
-        real(dp) :: phase = 0.0_dp          !! what damping allows an explicit step [rad]
-    contains
-        procedure :: longest_step
-    end type oscillation
 
     type, extends(integrator) :: continuous
         type(moving_block) :: block
@@ -114,35 +107,6 @@ contains
         end associate
     end subroutine prepare
 
-    !> What explicit steps are to know of a block on its springs. Longer ones than the phase allows
-    !> amplify what the tolerated error does not see: of both pairs a radian or more of a damped
-    !> swing goes well where that decays by at least half as fast as it should.
-    pure function oscillation_of(mass, stiffness, damping) result(swings)
-        real(dp), intent(in) :: mass        !! 0: it does not swing [F T^2/L]
-        real(dp), intent(in) :: stiffness   !! of all its springs [F/L]
-        real(dp), intent(in) :: damping     !! [F T/L]
-        type(oscillation) :: swings
-        real(dp), parameter :: one_radian = 3.0e-4_dp   !! damping ratio that allows this
-        real(dp), parameter :: most_damped = 0.5_dp     !! stability is as on the real axis
-        real(dp) :: ratio
-
-        if (.not. mass > 0.0_dp) return
-        ratio = 0.5_dp * damping / sqrt(stiffness * mass)
-        if (ratio > most_damped) return
-        swings%radian = sqrt(mass / stiffness)
-        swings%phase = (ratio / one_radian)**(1.0_dp / 7.0_dp)
-    end function oscillation_of
-
-    !> The longest explicit step that does not amplify the swings [T].
-    pure function longest_step(self, pair) result(dt)
-        class(oscillation), intent(in) :: self
-        type(explicit_pair), intent(in) :: pair
-        real(dp) :: dt
-
-        dt = self%radian
-        if (dt < huge(dt)) dt = dt * max(pair%neutral, self%phase)
-    end function longest_step
-
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self
         type(slider_state), intent(inout) :: old
@@ -211,12 +175,21 @@ contains
         real(dp), parameter :: unseen = 0.01_dp   !! part of the tolerated error
 
         yes = .false.
-        associate (eq => self%block%equations, y => self%block%y)
+        associate (eq => self%block%equations)
             if (.not. eq%rests .or. eq%phase /= phase_stick) return
-            yes = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension)) &
-                * self%weights(elastic) > unseen
+            yes = free_amplitude(self) * self%weights(elastic) > unseen
         end associate
     end function swings_freely
+
+    !> How far the block would swing on both springs if its contact rested [L].
+    pure function free_amplitude(self) result(size)
+        class(continuous), intent(in) :: self
+        real(dp) :: size
+
+        associate (y => self%block%y)
+            size = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension))
+        end associate
+    end function free_amplitude
 
     !> Length of the longest step that is stable [T]: of an explicit one that which amplifies no
     !> swing, on the springs that the block has at its slip rate. In closed form a quarter of one.
@@ -509,9 +482,7 @@ contains
         end do
         enough = 0.0_dp
         if (self%block%equations%rests .and. which == 1) enough = min(sqrt(unseen * g(which) &
-            / (tried%h * self%weights(elastic))), late * self%free%frequency &
-            * self%free%amplitude(self%block%y(:controlled), self%block%y(velocity) &
-            + self%block%first(extension)))
+            / (tried%h * self%weights(elastic))), late * self%free%frequency * free_amplitude(self))
         bracket%high = tried%h
         bracket%g_low = -g(which)   ! the start is before the end of the phase, whatever round-off
                                     ! says
