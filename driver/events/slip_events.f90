@@ -42,6 +42,7 @@ module slip_events
         real(dp) :: rate = 0.0_dp       !! of the force [F/T]
         real(dp) :: drive = 0.0_dp      !! position of the spring's far end [L]
         real(dp) :: holds = 0.0_dp      !! static friction force under the normal traction [F]
+        real(dp) :: acceleration = 0.0_dp   !! of the block, if it is known [L/T^2]
     contains
         procedure, private :: visit => visit_moment, mirrored
     end type moment
@@ -66,6 +67,8 @@ module slip_events
         real(dp) :: impedance = 0.0_dp     !! force that gives the block a velocity [F T/L]
         logical :: inertia = .false.       !! the block's velocity does not jump
         real(dp) :: speed = 0.0_dp         !! of the drive when it last moved [L/T]
+        real(dp) :: turning = 0.0_dp       !! velocity of the block where it is largest or least in
+                                           !! this step; if at the ends, the first one [L/T]
         integer, private :: sense = 1      !! of the loading, 1 or -1
         logical, private :: started = .false.
         real(dp), private :: reached = 0.0_dp     !! farthest place of the drive in that sense [L]
@@ -114,6 +117,7 @@ contains
         type(moment) :: before, now
         integer :: k
 
+        self%turning = velocity_at_turn(old, new)
         before = old
         if (tells_more(self, old, new)) then
             do k = 1, parts - 1
@@ -307,7 +311,7 @@ contains
         type(moment) :: end
         real(dp) :: latest   !! end of an event that goes on slowly [T]
 
-        self%fastest = max(self%fastest, now%velocity)
+        self%fastest = max(self%fastest, now%velocity, self%sense * self%turning)
         self%slipping = max(self%slipping, slip_rate)
         self%driving = max(self%driving, self%speed)
         if (slip_rate > limit(self)) then
@@ -377,40 +381,67 @@ contains
         type(moment) :: image
 
         image = moment(self%time, sense * self%force, self%slip, sense * self%velocity, &
-            sense * self%rate, sense * self%drive, self%holds)
+            sense * self%rate, sense * self%drive, self%holds, sense * self%acceleration)
     end function mirrored
 
-    !> The moment between two others at which the force turns, by cubic interpolation. A force that
-    !> changes all the way as at one of them turns at the other: the velocity of a block without
-    !> mass jumps there.
+    !> The moment between two others at which the force turns, by cubic interpolation.
     pure subroutine turning_point(a, b, between, found)
         type(moment), intent(in) :: a, b
         type(moment), intent(out) :: between
         logical, intent(out) :: found
-        real(dp), parameter :: bend = 0.1_dp   !! of the mean rate from either, part of their
-                                               !! difference; of a parabola a half
-        real(dp) :: dt, c0, c1, c2, root, s
+        real(dp) :: dt, s
 
-        found = a%rate * b%rate < 0.0_dp
-        if (.not. found) return
         dt = b%time - a%time
-        s = ((b%force - a%force) / dt - a%rate) / (b%rate - a%rate)
-        found = s > bend .and. s < 1.0_dp - bend
+        call find_turn([a%force, b%force], dt * [a%rate, b%rate], s, found)
         if (.not. found) return
-        c0 = dt * a%rate   ! d(force)/ds = c0 + c1 s + c2 s^2 for s = 0 to 1
-        c1 = 6.0_dp * (b%force - a%force) - dt * (4.0_dp * a%rate + 2.0_dp * b%rate)
-        c2 = 3.0_dp * dt * (a%rate + b%rate) - 6.0_dp * (b%force - a%force)
-        root = sqrt(max(0.0_dp, c1**2 - 4.0_dp * c0 * c2))
-        ! the one root in (0, 1), without cancellation
-        if (c0 * sign(1.0_dp, c1) > 0.0_dp) then
-            s = -0.5_dp * (c1 + sign(root, c1)) / c2
-        else
-            s = -2.0_dp * c0 / (c1 + sign(root, c1))
-        end if
-        s = min(1.0_dp, max(0.0_dp, s))
         between = between_moments(a, b, a%time + s * dt)
         between%rate = 0.0_dp
     end subroutine turning_point
+
+    !> The velocity of a block where it turns from growing to falling, or the reverse, between two
+    !> moments, by cubic interpolation; if it does not, that of the first [L/T].
+    pure function velocity_at_turn(a, b) result(velocity)
+        type(moment), intent(in) :: a, b
+        real(dp) :: velocity
+        real(dp) :: values(2), rates(2), s
+        logical :: turns
+
+        velocity = a%velocity
+        if (.not. a%acceleration * b%acceleration < 0.0_dp) return
+        values = [a%velocity, b%velocity]
+        rates = (b%time - a%time) * [a%acceleration, b%acceleration]
+        call find_turn(values, rates, s, turns)
+        if (turns) velocity = cubic(values, rates, s)
+    end function velocity_at_turn
+
+    !> Where a cubic turns in an interval of length 1, by its values and rates at both ends. What
+    !> changes all the way as at one end turns at the other: there it has a kink.
+    pure subroutine find_turn(values, rates, s, found)
+        real(dp), intent(in) :: values(2), rates(2)
+        real(dp), intent(out) :: s
+        logical, intent(out) :: found
+        real(dp), parameter :: bend = 0.1_dp   !! of the mean rate from either, part of their
+                                               !! difference; of a parabola a half
+        real(dp) :: c1, c2, root
+
+        s = 0.0_dp
+        found = rates(1) * rates(2) < 0.0_dp
+        if (.not. found) return
+        s = (values(2) - values(1) - rates(1)) / (rates(2) - rates(1))
+        found = s > bend .and. s < 1.0_dp - bend
+        if (.not. found) return
+        ! the rate is rates(1) + c1 s + c2 s^2
+        c1 = 6.0_dp * (values(2) - values(1)) - 4.0_dp * rates(1) - 2.0_dp * rates(2)
+        c2 = 3.0_dp * (rates(1) + rates(2)) - 6.0_dp * (values(2) - values(1))
+        root = sqrt(max(0.0_dp, c1**2 - 4.0_dp * rates(1) * c2))
+        ! the one root in (0, 1), without cancellation
+        if (rates(1) * sign(1.0_dp, c1) > 0.0_dp) then
+            s = -0.5_dp * (c1 + sign(root, c1)) / c2
+        else
+            s = -2.0_dp * rates(1) / (c1 + sign(root, c1))
+        end if
+        s = min(1.0_dp, max(0.0_dp, s))
+    end subroutine find_turn
 
     !> A moment within a step, whose slip is spread as the block's way is.
     pure function within(self, a, b, time) result(between)

@@ -123,7 +123,7 @@ contains
             self%onsets = [self%onsets, news%slip_events(k)%onset]
             self%peak_velocity = max(self%peak_velocity, news%slip_events(k)%peak_velocity)
         end do
-        self%peak_velocity = max(self%peak_velocity, news%sums%fastest)
+        self%peak_velocity = max(self%peak_velocity, news%sums%fastest, abs(self%finder%turning))
         if (self%drive%listed > 1) call self%measure(old, new, before, now)
     end subroutine see
 
@@ -329,6 +329,7 @@ contains
         now = moment(state%time, means(2), means(3), means(1), self%stiffness &
             * (self%drive%drive_velocity(state%time, i) - means(1)), state%drive, self%area &
             * self%coefficient * max(0.0_dp, self%drive%normal_traction(state%time, i)))
+        if (self%one_block) now%acceleration = state%a(1)
     end function seen
 
     !> Counts an event in the piece of the programme that starts at `piece_start`. A recurrence time

@@ -76,7 +76,7 @@ class Events(EventsOfRuns):
         # a swing of D = 3 about friction: slips were up to 1.3 % off, peak velocities 7 %
         velocity, stiffness, drop = 1, 4, 3
         swing = math.hypot(drop, velocity * math.sqrt(stiffness))   # of the force, mass 1
-        for rtol in ('1e-3', '1e-4', '1e-5', '1e-6'):
+        for rtol, close in (('1e-3', 2e-3), ('1e-4', 5e-4), ('1e-5', 1e-4), ('1e-6', 3e-5)):   # at 1e-6 it was 4e-3
             event = self.events(f"""&friction law='coulomb', mu=0.3, alpha_n=1, alpha_t=1, contact='rigid' /
                 &slider mass=1, stiffness={stiffness}, normal_traction=20 /
                 &drive velocity={velocity} /
@@ -87,7 +87,7 @@ class Events(EventsOfRuns):
             slip = velocity * math.pi / 2 + 2 * swing / stiffness
             self.assertAlmostEqual(event['slip'], slip, delta=1e-3 * slip)
             peak = velocity + swing / math.sqrt(stiffness)
-            self.assertAlmostEqual(event['peak_velocity'], peak, delta=5e-3 * peak)
+            self.assertAlmostEqual(event['peak_velocity'], peak, delta=close * peak)
         # the fourth hardly exceeds 1.5 V, its mean slip rates in such steps do not
         events = self.events("""&friction law='static_kinetic', mu_s=0.785, mu_k=0.32, d_c=0.65, alpha_n=1, alpha_t=1, contact='rigid', tau_max=17.85 /
                 &slider mass=1.25, stiffness=0.886, damping=0.061, normal_traction=31.3 /
