@@ -39,6 +39,8 @@ module slip_observer
         logical :: rigid = .false.                     !! no contact spring: slip stops at once
         logical :: one_block = .true.
         logical :: jumps = .false.                     !! friction drops as slip begins
+        logical :: springs = .false.                   !! traction is that of the contact spring,
+                                                       !! also under a load that changes at once
         type(facts) :: law
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
@@ -73,6 +75,8 @@ contains
         self%jumps = run%adaptive .and. .not. (run%newmark .or. run%rigid_contact) .and. &
             run%one_by_itself() .and. self%law%traits%onset /= onset_gradual .and. .not. &
             self%law%damping > 0.0_dp
+        self%springs = creeps(self%law) .and. .not. (run%rigid_contact .or. self%law%damping &
+            > 0.0_dp)
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -129,8 +133,9 @@ contains
 
     !> A step belongs to the piece that it ends in, or that ends with it. The first one of a piece
     !> gives it its start, too; but what friction is after a sudden load is seen at the step's end,
-    !> unless nothing has slipped. A block without contact spring slides against another force than
-    !> what held it before a sudden load, or holds it once it has come to rest.
+    !> unless nothing has slipped or a contact spring carries it. A block without contact spring
+    !> slides against another force than what held it before a sudden load, or holds it once it has
+    !> come to rest.
     pure subroutine measure(self, old, new, before, now)
         class(slip_watch), intent(inout) :: self
         type(slider_state), intent(in) :: old, new
@@ -139,7 +144,7 @@ contains
         integer :: i
         logical :: turns, slides
 
-        aside = round_off * (new%time - old%time)
+        aside = max(round_off * (new%time - old%time), 2.0_dp * spacing(new%time))
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
         if (max(old%normal, new%normal) <= self%least_load(i)) return
         slides = now%slip > before%slip
@@ -148,7 +153,8 @@ contains
             load = old%normal
             if (self%prescribed) load = self%drive%normal_traction(old%time, i)
             if (load > self%least_load(i)) then
-                if (is_gradual(self%drive, i) .or. .not. (self%prescribed .and. slides)) then
+                if (is_gradual(self%drive, i) .or. self%springs .or. .not. (self%prescribed .and. &
+                    slides)) then
                     call self%friction(i)%take(over_load(self, i, mean_of(old), load))
                 else if (self%rigid .and. old%normal > 0.0_dp) then
                     call self%friction(i)%take(over_load(self, i, sliding(self, old, load, way), &
@@ -220,7 +226,7 @@ contains
             self%rigid) return   ! a sudden load: what comes of it at once is not known
         step%load_rate = -self%law%alpha_n * [old%v_n, new%v_n]
         step%law = self%law
-        step%yields = self%law%traits%onset /= onset_gradual .or. self%law%traits%memory /= 2
+        step%yields = .not. creeps(self%law)
         step%force = self%sense(i) * [old%friction(1), new%friction(1)] / self%area
         if (step%slides .and. drops(self, i, old)) then
             step%slides = .false.
@@ -237,11 +243,31 @@ contains
             if (.not. step%yields) where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, &
                 abs(step%force) - self%law%cohesion) / step%load
         end if
+        if (.not. self%finder%inertia) step%rate = monotonic(step%rate, (step%force(2) &
+            - step%force(1)) / step%length)
         range = [huge(range), -huge(range)]
         if (self%friction(i)%seen) range = [self%friction(i)%least, self%friction(i)%peak]
         call step%extremes(self%drive, i, self%least_load(i), range)
         call self%friction(i)%widen(range)
     end subroutine find_extremes
+
+    !> Does slip come gradually under any traction, without a strength?
+    pure function creeps(law) result(yes)
+        type(facts), intent(in) :: law
+        logical :: yes
+
+        yes = law%traits%onset == onset_gradual .and. law%traits%memory == 2
+    end function creeps
+
+    !> Rates with which a cubic does not turn between its ends. Those of a block without mass may be
+    !> of what it does after the step: its velocity jumps where a phase of the contact ends.
+    elemental function monotonic(rate, mean) result(limited)
+        real(dp), intent(in) :: rate
+        real(dp), intent(in) :: mean   !! between the ends
+        real(dp) :: limited
+
+        limited = sign(min(max(0.0_dp, sign(1.0_dp, mean) * rate), 3.0_dp * abs(mean)), mean)
+    end function monotonic
 
     !> Where the drive spring turns within a step, friction does, unless inertia or a damper has a
     !> say in it.

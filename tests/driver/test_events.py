@@ -314,6 +314,28 @@ class Pieces(Program):
                     &time t_end=500, rtol=1e-5 /""")
                 self.assertLess(pieces[1]['peak_friction'], 0.609 + 1e-5)
 
+    def test_friction_of_a_block_without_mass_is_that_up_to_its_jump(self):
+        # the velocity after the jump, 300 times that of the drive, made friction swing to -0.8 in the step before
+        for rtol in (1e-4, 1e-7):
+            piece = self.rows_of_pieces(f"""&friction law='slip_weakening', mu_s=0.8, mu_k=0.25, d_c=0.02, alpha_n=160, alpha_t=18 /
+                &slider mass=0, stiffness=1.8, damping=0.09, normal_traction=3.3 /
+                &drive velocity=0.07, 0.07, duration=98, 1, normal=2.2, 2.2, normal_change='ramp' /
+                &time t_end=98, rtol={rtol} /""")[0]
+            self.assertAlmostEqual(piece['peak_friction'], 0.8, delta=1e-4)
+            self.assertAlmostEqual(piece['least_friction'], 0, delta=1e-12)
+
+    def test_a_contact_spring_keeps_its_traction_when_the_load_changes_at_once(self):
+        # creep takes time: friction over the new load is largest at once, and was told at the end of the first step
+        for law in ("'rate_and_state'", "'linker_dieterich', alpha=0.005", "'flash_heating', f_w=0.2, v_w=1"):
+            for mass, rtol in ((0, 1e-4), (1e-3, 1e-6)):
+                with self.subTest(law=law, mass=mass):
+                    before, after = self.rows_of_pieces(f"""
+                        &friction law={law}, a=0.012, b=0.01, d_c=0.01, v0=1e-3, f0=0.6, alpha_n=100, alpha_t=300 /
+                        &slider mass={mass}, stiffness=30, damping=0.01, normal_traction=2 /
+                        &drive velocity=1e-3, 1e-3, duration=200, 50, normal=2, 1.5 /
+                        &time t_end=250, rtol={rtol} /""")
+                    self.assertAlmostEqual(after['peak_friction'], before['last_friction'] * 2 / 1.5, delta=1e-9)
+
     def test_friction_before_it_drops_is_a_peak_however_long_the_step_before(self):
         # friction drops within the contact spring at once: its peak was that of the row before, 0.25 or less in a slow drive
         for law in ("'static_kinetic', d_c=100", "'slip_weakening', d_c=1e-5", "'slip_weakening_healing', d_c=1e-5, xi=1"):
