@@ -570,7 +570,8 @@ contains
             contact%traction = pull / self%area
         else
             contact%velocity = y(velocity)
-            if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(y(velocity))
+            if (self%surface%traits%onset == onset_gradual .and. self%phase /= phase_capped) sense &
+                = self%sense_of(y(velocity))   ! or a step that ends a cap would go beyond, and back
             if (.not. self%mass > 0.0_dp) then
                 if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(pull)
                 call slip_of(self%surface, state, pressure, damper_balance(sense, sense * pull &
