@@ -74,7 +74,7 @@ contains
         self%one_block = run%chain%n_blocks == 1
         self%jumps = run%adaptive .and. .not. (run%newmark .or. run%rigid_contact) .and. &
             run%one_by_itself() .and. self%law%traits%onset /= onset_gradual .and. .not. &
-            self%law%damping > 0.0_dp
+            self%law%damping > 0.0_dp .and. max(run%mass, run%damping) > 0.0_dp
         self%springs = creeps(self%law) .and. .not. (run%rigid_contact .or. self%law%damping &
             > 0.0_dp)
         ! the friction force has the error of a step, part of what the largest load makes of it

@@ -162,11 +162,20 @@ contains
             if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
                 * block%first(slip)   ! velocities of less than round-off of the drive's
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
-            if (tried%switch > 0 .and. tried%switch /= lifts) call change_phase(block, end, &
-                tried%switch)   ! the next step begins with a contact that opens or closes
+            ! the next step begins with a contact that opens or closes, and with a block that jumps
+            if (tried%switch > 0 .and. tried%switch /= lifts .and. .not. (may_jump(eq) .and. &
+                eq%phase == phase_stick)) call change_phase(block, end, tried%switch)
         end associate
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Does the block go along where its contact jumps?
+    pure function may_jump(eq) result(yes)
+        type(slider_equations), intent(in) :: eq
+        logical :: yes
+
+        yes = .not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp .or. eq%rigid)
+    end function may_jump
 
     !> Does the block swing on a contact that rests, by what explicit steps would have to follow?
     pure function swings_freely(self) result(yes)
@@ -228,9 +237,10 @@ contains
         !> Part of the time that is lost in round-off, but for the steps that it takes to follow a
         !> decay which has gone on for as long.
         real(dp), parameter :: lost = 256.0_dp * shortest
-        real(dp) :: pressure, open_below
+        real(dp) :: pressure, open_below, before
         logical :: touches
 
+        before = self%block%y(extension)
         piece = self%drive%piece(old%time)
         if (piece /= self%block%equations%piece) then
             call self%block%equations%enter(piece)
@@ -259,6 +269,9 @@ contains
         end associate
         call self%take_limit(old%time)
         call settle(self%block, old%time)
+        ! the fall of a block that has jumped is a step of its own, which takes next to no time
+        if (may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) > 0.0_dp) &
+            self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
         call self%set_weights(old%time)
         self%swings = swings_freely(self)
     end subroutine begin

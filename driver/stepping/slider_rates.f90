@@ -660,9 +660,8 @@ contains
         case (1)
             state%mu = y(memory)
             full = full_strength(self, y, pressure)
-            if (self%phase == phase_capped) then
-                state%r = y(ratio)
-            else if (self%damper > 0.0_dp .and. self%phase /= phase_stick) then
+            if (self%phase == phase_capped .or. self%damper > 0.0_dp .and. self%phase &
+                /= phase_stick) then
                 state%r = min(1.0_dp, max(y(ratio), 0.0_dp))
             else if (full > 0.0_dp) then
                 carried = self%alpha * abs(y(elastic))
