@@ -270,8 +270,9 @@ contains
         call self%take_limit(old%time)
         call settle(self%block, old%time)
         ! the fall of a block that has jumped is a step of its own, which takes next to no time
-        if (may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) > 0.0_dp) &
+        if (may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) > 0.0_dp) then
             self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
+        end if
         call self%set_weights(old%time)
         self%swings = swings_freely(self)
     end subroutine begin
