@@ -36,12 +36,15 @@ module slip_observer
         integer, allocatable :: sense(:)               !! of the loading in the pieces, 1 or -1
         real(dp), allocatable :: least_load(:)         !! normal traction that tells friction there
         logical :: prescribed = .true.                 !! the normal traction, not an answer
-        logical :: rigid = .false.                     !! no contact spring: slip stops at once
+        logical :: elastic = .true.                    !! there is a contact spring
+        logical :: rigid = .false.                     !! there is none, and slip stops at once
         logical :: one_block = .true.
         logical :: jumps = .false.                     !! friction drops as slip begins
         logical :: springs = .false.                   !! traction is that of the contact spring,
                                                        !! also under a load that changes at once
         type(facts) :: law
+        real(dp) :: holding = 0.0_dp                   !! stiffness of the spring that holds the
+                                                       !! traction of a contact [F/L^3]
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -70,13 +73,14 @@ contains
         allocate (self%pieces(run%drive%listed), self%friction(run%drive%listed), self%onsets(0))
         self%sense = senses(run%drive, run%loading_sense())
         self%prescribed = .not. run%across%free()
+        self%elastic = .not. run%rigid_contact
         self%rigid = run%rigid_contact .and. self%law%traits%onset /= onset_gradual
         self%one_block = run%chain%n_blocks == 1
         self%jumps = run%adaptive .and. .not. (run%newmark .or. run%rigid_contact) .and. &
             run%one_by_itself() .and. self%law%traits%onset /= onset_gradual .and. .not. &
             self%law%damping > 0.0_dp .and. max(run%mass, run%damping) > 0.0_dp
-        self%springs = creeps(self%law) .and. .not. (run%rigid_contact .or. self%law%damping &
-            > 0.0_dp)
+        self%holding = merge(self%law%alpha_t, run%stiffness / run%area, self%elastic)
+        self%springs = creeps(self%law) .and. self%elastic .and. .not. self%law%damping > 0.0_dp
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -232,24 +236,43 @@ contains
             step%slides = .false.
             step%force(2) = self%sense(i) * held(self, old, new) / self%area
         end if
+        if (step%slides .and. creeps(self%law)) step%slides = follows_load(self, step, i, &
+            now%slip - before%slip)
         step%coefficient = [old%statev(1, statev_mu), new%statev(1, statev_mu)]
+        step%rate = self%sense(i) * [before%rate, now%rate] / self%area
+        if (self%elastic) step%rate = self%sense(i) * (self%law%alpha_t * [old%v, new%v] &
+            + self%law%damping * [old%a, new%a])
         if (self%rigid) then
-            step%rate = self%sense(i) * [before%rate, now%rate] / self%area
             if (step%slides) step%force = self%sense(i) * sign(strength_at(self%law, &
                 step%coefficient, step%load), new%x(1) - old%x(1))
-        else
-            step%rate = self%sense(i) * (self%law%alpha_t * [old%v, new%v] + self%law%damping &
-                * [old%a, new%a])
-            if (.not. step%yields) where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, &
-                abs(step%force) - self%law%cohesion) / step%load
+        else if (creeps(self%law)) then
+            where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, abs(step%force) &
+                - self%law%cohesion) / step%load
         end if
-        if (.not. self%finder%inertia) step%rate = monotonic(step%rate, (step%force(2) &
-            - step%force(1)) / step%length)
+        if (creeps(self%law) .or. .not. self%finder%inertia) step%rate = monotonic(step%rate, &
+            (step%force(2) - step%force(1)) / step%length)
         range = [huge(range), -huge(range)]
         if (self%friction(i)%seen) range = [self%friction(i)%least, self%friction(i)%peak]
         call step%extremes(self%drive, i, self%least_load(i), range)
         call self%friction(i)%widen(range)
     end subroutine find_extremes
+
+    !> Does friction that creeps follow the load of a step? Not with less slip than it takes to let
+    !> the spring that holds the traction change with the load.
+    pure function follows_load(self, step, i, slip) result(follows)
+        class(slip_watch), intent(in) :: self
+        type(course), intent(in) :: step
+        integer, intent(in) :: i         !! piece
+        real(dp), intent(in) :: slip     !! in the step [L]
+        logical :: follows
+        real(dp) :: loads(3)
+
+        loads = [step%load, step%load(2)]
+        if (self%prescribed) loads(3) = self%drive%normal_traction(step%start + 0.5_dp &
+            * step%length, i)
+        follows = slip * self%holding * maxval(loads) > maxval(abs(step%force)) * (maxval(loads) &
+            - minval(loads))
+    end function follows_load
 
     !> Does slip come gradually under any traction, without a strength?
     pure function creeps(law) result(yes)

@@ -162,12 +162,21 @@ contains
             if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
                 * block%first(slip)   ! velocities of less than round-off of the drive's
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
-            ! the next step begins with a contact that opens or closes, and with a block that jumps
-            if (tried%switch > 0 .and. tried%switch /= lifts .and. .not. (may_jump(eq) .and. &
-                eq%phase == phase_stick)) call change_phase(block, end, tried%switch)
+            if (tried%switch > 0 .and. .not. waits(eq, tried%switch)) call change_phase(block, &
+                end, tried%switch)
         end associate
         call self%fill(end, piece, old, new)
     end subroutine step
+
+    !> Does the next step begin with the next phase: with a contact that opens or closes, or with a
+    !> block that jumps?
+    pure function waits(eq, switch) result(yes)
+        type(slider_equations), intent(in) :: eq
+        integer, intent(in) :: switch   !! way in which the phase ends
+        logical :: yes
+
+        yes = switch == lifts .or. may_jump(eq) .and. eq%phase == phase_stick
+    end function waits
 
     !> Does the block go along where its contact jumps?
     pure function may_jump(eq) result(yes)
@@ -237,10 +246,11 @@ contains
         !> Part of the time that is lost in round-off, but for the steps that it takes to follow a
         !> decay which has gone on for as long.
         real(dp), parameter :: lost = 256.0_dp * shortest
-        real(dp) :: pressure, open_below, before
+        real(dp) :: pressure, open_below
+        real(dp) :: jumped   !! extension of the drive spring, then what it jumps by [L]
         logical :: touches
 
-        before = self%block%y(extension)
+        jumped = self%block%y(extension)
         piece = self%drive%piece(old%time)
         if (piece /= self%block%equations%piece) then
             call self%block%equations%enter(piece)
@@ -270,7 +280,8 @@ contains
         call self%take_limit(old%time)
         call settle(self%block, old%time)
         ! the fall of a block that has jumped is a step of its own, which takes next to no time
-        if (may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) > 0.0_dp) then
+        jumped = self%block%y(extension) - jumped
+        if (may_jump(self%block%equations) .and. abs(jumped) > 0.0_dp) then
             self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
         end if
         call self%set_weights(old%time)

@@ -1,4 +1,5 @@
 """Slip events and what is read off the pieces of a programme, as a user sees them."""
+import itertools
 import math
 import unittest
 
@@ -313,13 +314,18 @@ class Pieces(Program):
                                 &drive velocity=1, 1, duration=60, 1, normal_amplitude={amplitude}, normal_frequency=0.05 /
                                 &time t_end=60, rtol={rtol} /""")[0]
                             self.assertAlmostEqual(slides['peak_friction'] / (mu + cohesion / least), 1, delta=2e-4)
-        for contact in ('rigid', 'elastic'):
-            holds = self.rows_of_pieces(f"""&friction law='coulomb', alpha_n=1e4, alpha_t=1e4, mu=0.5, contact='{contact}' /
-                &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction=2 /
-                &drive velocity=1, 0, duration=0.2, 100, normal_amplitude=1, normal_frequency=0.05 /
-                &time t_end=100.2, rtol=1e-5 /""")[1]
-            self.assertAlmostEqual(holds['peak_friction'], 0.2, delta=1e-4)
-            self.assertAlmostEqual(holds['least_friction'], 0.2 / 3, delta=1e-4)
+        # what holds without slip, by sticking or by creeping next to nothing: the rows, and the peak with them, were up to 2.6 % off
+        creep = 'a=0.01, b=0.015, d_c=0.01, v0=1, f0=0.6'
+        laws = ("'coulomb', mu=0.5", f"'rate_and_state', {creep}", f"'flash_heating', {creep}, f_w=0.2, v_w=100",
+                f"'linker_dieterich', {creep}, alpha=0.005")
+        for law, contact, rtol in itertools.product(laws, ('rigid', 'elastic'), (1e-3, 1e-5)):
+            with self.subTest(law=law, contact=contact, rtol=rtol):
+                holds = self.rows_of_pieces(f"""&friction law={law}, alpha_n=1e4, alpha_t=1e4, contact='{contact}' /
+                    &slider mass=1e-3, stiffness=1, damping=0.1, normal_traction=2 /
+                    &drive velocity=1, 0, duration=0.2, 100, normal_amplitude=1, normal_frequency=0.05 /
+                    &time t_end=100.2, rtol={rtol} /""")[1]
+                self.assertAlmostEqual(holds['peak_friction'], 0.2, delta=1e-4)
+                self.assertAlmostEqual(holds['least_friction'], 0.2 / 3, delta=1e-4)
 
     def test_a_contact_that_sticks_in_a_long_step_carries_no_more_than_its_strength(self):
         # a drive that slows down lets the contact stick at its strength: between the ends of that step it was told to carry 0.614
