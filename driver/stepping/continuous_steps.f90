@@ -22,7 +22,7 @@ module continuous_steps
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
     use swing_bound, only : oscillation, oscillation_of
-    use trial_step, only : look_at, trial
+    use trial_step, only : look_at, most_open, trial
     implicit none
     private
 
@@ -31,6 +31,9 @@ module continuous_steps
     integer, parameter, public :: implicit_rates = 11   !! evaluations of a block's in a step
     !> Part of the time that no step is shorter than.
     real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
+    !> Part of it that is lost in round-off, but for the steps that it takes to follow a decay which
+    !> has gone on for as long.
+    real(dp), parameter :: lost = 256.0_dp * shortest
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
 
     type, extends(integrator) :: continuous
@@ -47,13 +50,16 @@ module continuous_steps
         type(oscillation) :: swinging           !! on the drive spring alone
         type(oscillation) :: lifting            !! of the motion across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
+        real(dp) :: pressed = 1.0_dp            !! that of the step's start, part of it; but 1 where
+                                                !! slip rates do not go through decades
         logical :: reloaded = .false.           !! it is not always the same
         type(swing) :: free                     !! of a block whose contact rests
         logical :: swings = .false.             !! the step is of that, in closed form
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
-        procedure, private :: begin, attempt, swing_on, locate, choose_method, set_weights, fill
+        procedure, private :: begin, attempt, swing_on, locate, choose_method, set_weights, &
+            choose_unknown, fill
     end type continuous
 
 contains
@@ -139,8 +145,9 @@ contains
             if (tried%error <= 1.0_dp) exit
             again = .true.
             if (.not. self%can_shorten(old%time, tried%h, tried%error)) then
-                if (stopped(self%block, old%time)) then
+                if (stopped(self%block, old%time, lost * old%time)) then
                     call settle(self%block, old%time)
+                    call know_velocity(self%block)
                     self%dt = 1.0e3_dp * shortest * old%time
                     cycle
                 end if
@@ -159,8 +166,7 @@ contains
             block%y = tried%y
             block%first = tried%last
             call follow_velocity(block, end, slipped)
-            if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
-                * block%first(slip)   ! velocities of less than round-off of the drive's
+            call know_velocity(block)
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
             if (tried%switch > 0 .and. .not. waits(eq, tried%switch)) call change_phase(block, &
                 end, tried%switch)
@@ -185,6 +191,17 @@ contains
 
         yes = .not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp .or. eq%rigid)
     end function may_jump
+
+    !> The velocity of a block that follows the traction: that may be less than round-off of the
+    !> drive's.
+    pure subroutine know_velocity(block)
+        type(moving_block), intent(inout) :: block
+
+        associate (eq => block%equations)
+            if (eq%follows_traction()) block%y(velocity) = eq%sense_of(block%y(elastic)) &
+                * block%first(slip)
+        end associate
+    end subroutine know_velocity
 
     !> Does the block swing on a contact that rests, by what explicit steps would have to follow?
     pure function swings_freely(self) result(yes)
@@ -243,9 +260,6 @@ contains
         class(continuous), intent(inout) :: self
         type(slider_state), intent(inout) :: old
         integer, intent(out) :: piece   !! of the programme
-        !> Part of the time that is lost in round-off, but for the steps that it takes to follow a
-        !> decay which has gone on for as long.
-        real(dp), parameter :: lost = 256.0_dp * shortest
         real(dp) :: pressure, open_below
         real(dp) :: jumped   !! extension of the drive spring, then what it jumps by [L]
         logical :: touches
@@ -285,6 +299,7 @@ contains
             self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
         end if
         call self%set_weights(old%time)
+        if (self%block%equations%creeps_along()) call self%choose_unknown(old%time)
         self%swings = swings_freely(self)
     end subroutine begin
 
@@ -359,11 +374,12 @@ contains
         if (self%implicit) then
             scales(:, 1) = self%weights
             scales(:, 2) = self%natural
+            scales(elastic, 2) = self%natural(elastic) * self%pressed
             associate (block => self%block)
                 call rosenbrock_step(block%equations, t, tried%h, block%y, block%first, scales, &
                     tried%y, tried%error, growth)
                 tried%stiffness = tried%h * growth
-                if (tried%error <= 1.0_dp) call look_at(block, t, self%weights(elastic), tried)
+                if (tried%error <= 1.0_dp) call look_at(block, t, self%weights, tried)
                 if (tried%error <= 1.0_dp .and. tried%stiffness > 5.0_dp .and. may_grow( &
                     block%equations)) tried%error = max(tried%error, (tried%h * growth_rate( &
                     block%equations, t + tried%h, tried%y, tried%last, self%natural))**4)
@@ -468,14 +484,37 @@ contains
             self%block%equations%least_pressure)
         if (self%block%equations%surface%traits%stiff) then
             ! what counts for slip that goes with an exponential is traction over pressure
+            self%pressed = min(1.0_dp, pressure / self%largest)
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
-                * pressure / self%largest))
+                * self%pressed))
         else if (self%block%equations%surface%traits%memory == 1) then
             ! R is traction over strength, and how it grows from a touchdown on is not forgotten
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * self%rtol * min(1.0_dp, &
                 max(pressure, self%block%equations%surface%law%cohesion) / self%largest))
         end if
     end subroutine set_weights
+
+    !> Velocity or traction of a rigid contact that creeps: each tells the other. The traction is
+    !> the unknown, unless its tolerated error leaves the velocity open by many times its own: of a
+    !> surface that carries next to nothing the traction tells no velocity at all.
+    subroutine choose_unknown(self, t)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t   !! [T]
+        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
+        logical :: by_velocity
+
+        associate (block => self%block, eq => self%block%equations)
+            call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
+            call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), block%first(slip), &
+                pressure, resistance, by_rate)
+            by_velocity = most_open * by_rate * self%weights(elastic) < self%weights(velocity) &
+                * eq%alpha
+            if (by_velocity .eqv. eq%by_velocity) return
+            eq%by_velocity = by_velocity
+            block%known = .false.
+            call settle(block, t)
+        end associate
+    end subroutine choose_unknown
 
     !> Ends a step where its phase does, if it has ended. The error of a shorter step can be larger:
     !> then it is not taken.

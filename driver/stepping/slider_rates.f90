@@ -45,6 +45,8 @@ module slider_rates
         real(dp) :: least_share = 0.0_dp !! R beside a damper grows as from here at least: its rate
                                          !! at 0 has no bound, its way from there is short [-]
         logical :: rigid = .false.       !! the contact has no spring
+        logical :: by_velocity = .false. !! where that creeps: its traction follows the block's
+                                         !! velocity, which is the unknown
         type(normal_motion) :: across    !! the interface: there the pressure follows from `place`
         real(dp) :: alpha_n = 0.0_dp     !! normal stiffness of the contact [F/L^3]
         real(dp) :: open_below = 0.0_dp  !! pressure that counts as none [F/L^2]
@@ -65,8 +67,9 @@ module slider_rates
         real(dp) :: forward = 1.0_dp     !! sense of the loading in x, 1 or -1
     contains
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
-            traction, inputs, pull, slip_tendency, follows_traction, sense_of, follows_share, &
-            runs_away, damped_contact, balance_at, pressed_to, find_least_share, share_rate
+            traction, inputs, pull, slip_tendency, creeps_along, follows_traction, sense_of, &
+            follows_share, runs_away, damped_contact, balance_at, pressed_to, find_least_share, &
+            share_rate
     end type slider_equations
 
     !> What a contact does to the block. Those that find it fill in what is not zero.
@@ -609,14 +612,23 @@ contains
         yes = dy(slip) > far * moved .and. .not. self%rigid
     end function runs_away
 
-    !> Is the velocity of a block on a rigid contact that of its slip under the traction? Then that
-    !> is an unknown, in the place of the elastic displacement: slip rates go through decades.
+    !> Is it a block with a mass on a rigid contact that creeps? Its velocity and its traction tell
+    !> each other.
+    pure function creeps_along(self) result(creeps)
+        class(slider_equations), intent(in) :: self
+        logical :: creeps
+
+        creeps = self%rigid .and. self%phase == phase_slide .and. self%mass > 0.0_dp &
+            .and. self%surface%traits%onset == onset_gradual
+    end function creeps_along
+
+    !> Is its velocity that of its slip under the traction? Then that is an unknown, in the place of
+    !> the elastic displacement: slip rates go through decades.
     pure function follows_traction(self) result(follows)
         class(slider_equations), intent(in) :: self
         logical :: follows
 
-        follows = self%rigid .and. self%phase == phase_slide .and. self%mass > 0.0_dp &
-            .and. self%surface%traits%onset == onset_gradual
+        follows = self%creeps_along() .and. .not. self%by_velocity
     end function follows_traction
 
     !> A rigid contact that creeps, on a block with a mass: `traction(v, theta, p)` changes as its

@@ -29,7 +29,7 @@ contains
             eq%sense = eq%sense_of(v)
             if (abs(v) > 0.0_dp .and. eq%phase == phase_stick) eq%phase = phase_slide
             block%y(elastic) = 0.0_dp
-            if (.not. abs(v) > 0.0_dp .and. eq%follows_traction()) then
+            if (.not. abs(v) > 0.0_dp .and. eq%creeps_along()) then
                 traction = start%friction(1) / eq%area
                 call eq%surface%slip_rate(eq%law_state_of(block%y, start%normal), load_rates( &
                     abs(traction), 0.0_dp, 1.0_dp, start%normal, 0.0_dp, .false.), v, jumps)
@@ -46,7 +46,7 @@ contains
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp) :: resistance, by_rate
 
-        if (.not. block%equations%follows_traction()) return
+        if (.not. block%equations%creeps_along()) return
         associate (eq => block%equations)
             call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), &
                 abs(block%y(velocity)), pressure, resistance, by_rate)
@@ -56,30 +56,41 @@ contains
         end associate
     end subroutine hold_velocity
 
-    !> Does a block on a rigid contact that creeps stop? It is so slow only then for less than time
-    !> can tell: friction falls to what balances the drive spring, or changes its side, at once. On
-    !> that side the block is some times faster, or as short steps would be asked for again.
-    function stopped(block, t) result(yes)
+    !> Does a block on a rigid contact that creeps stop or start? It is so slow only then for less
+    !> than time can tell: friction falls to what balances the drive spring, or changes its side, at
+    !> once. On that side the block is some times faster, or as short steps would be asked for
+    !> again, and so it is at a start, up to the balance.
+    function stopped(block, t, time_lost) result(yes)
         type(moving_block), intent(inout) :: block
-        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: t           !! [T]
+        real(dp), intent(in) :: time_lost   !! in round-off [T]
         logical :: yes
-        real(dp), parameter :: faster = 16.0_dp
-        real(dp) :: pull   !! as a traction [F/L^2]
-        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
+        real(dp), parameter :: faster = 16.0_dp, round_off = 4.0_dp * epsilon(1.0_dp)
+        real(dp) :: pull, carried   !! tractions in the sense of the pull [F/L^2]
+        real(dp) :: v_drive, pressure, pressure_rate, traction, by_rate, balanced
+        type(law_state) :: state
+        logical :: jumps
 
-        associate (eq => block%equations, y => block%y)
-            pull = eq%pull(y) / eq%area
-            yes = eq%follows_traction() .and. sign(pull, pull * y(elastic)) &
-                < eq%alpha * abs(y(elastic))
+        associate (eq => block%equations, y => block%y, slip_rate => block%first(slip))
+            pull = abs(eq%pull(y)) / eq%area
+            carried = sign(1.0_dp, eq%pull(y)) * eq%alpha * y(elastic)
+            yes = eq%follows_traction() .and. abs(pull - carried) > round_off * pull
             if (.not. yes) return
-            if (abs(pull) < eq%alpha * abs(y(elastic))) then
-                y(elastic) = pull / eq%alpha
-            else
+            traction = pull
+            if (carried < pull) then
                 call eq%inputs(t, y, v_drive, pressure, pressure_rate)
-                call eq%surface%resistance_at(eq%law_state_of(y, pressure), faster &
-                    * block%first(slip), pressure, resistance, by_rate)
-                y(elastic) = sign(min(resistance, abs(pull)), pull) / eq%alpha
+                state = eq%law_state_of(y, pressure)
+                call eq%surface%resistance_at(state, faster * slip_rate, pressure, traction, &
+                    by_rate)
+                traction = min(traction, pull)
+                if (carried >= 0.0_dp) then
+                    call eq%surface%slip_rate(state, load_rates(traction, 0.0_dp, 1.0_dp, &
+                        pressure, 0.0_dp, .false.), balanced, jumps)
+                    yes = eq%mass * (balanced - slip_rate) < eq%area * (pull - carried) * time_lost
+                    if (.not. yes) return
+                end if
             end if
+            y(elastic) = sign(traction, eq%pull(y)) / eq%alpha
             block%known = .false.
         end associate
     end function stopped

@@ -3,12 +3,16 @@
 module trial_step
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
-    use slider_rates, only : damped, dissipated, elastic, extension, phase_slide, ratio, slip, &
-        slider_equations, unknowns, velocity
+    use slider_rates, only : controlled, damped, dissipated, elastic, extension, phase_slide, &
+        ratio, slip, slider_equations, unknowns, velocity
     implicit none
     private
 
     public :: look_at, trial
+
+    !> Tolerated errors of its velocity by which the traction of a rigid contact that creeps may
+    !> leave it open.
+    real(dp), parameter, public :: most_open = 10.0_dp
 
     type :: trial
         real(dp) :: h                !! [T]
@@ -22,20 +26,24 @@ module trial_step
 contains
 
     !> Looks at a step of Rodas4 with an error that is tolerated.
-    subroutine look_at(block, t, weight, tried)
+    subroutine look_at(block, t, weights, tried)
         type(moving_block), intent(in) :: block
-        real(dp), intent(in) :: t        !! of its start [T]
-        real(dp), intent(in) :: weight   !! inverse of the tolerated error of the contact's spring
+        real(dp), intent(in) :: t                     !! of its start [T]
+        real(dp), intent(in) :: weights(controlled)   !! inverse of the tolerated errors
         type(trial), intent(inout) :: tried
         logical :: failed
 
         if (block%equations%surface%traits%memory == 1) call limit_share(block%equations, t, tried)
         call block%equations%rates(t + tried%h, tried%y, tried%last, failed)
         if (failed) tried%error = huge(tried%error)
-        if (wild(block, weight, tried)) tried%error = max(tried%error, 2.0_dp**4)
+        associate (eq => block%equations)
+            if (eq%creeps_along() .and. eq%by_velocity) tried%y(elastic) = eq%traction(t &
+                + tried%h, tried%y) / eq%alpha
+        end associate
+        if (wild(block, weights(elastic), tried)) tried%error = max(tried%error, 2.0_dp**4)
         if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
         if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, &
-            weight, tried)
+            weights, tried)
         if (block%equations%follows_share()) call mobilise(block, tried)
     end subroutine look_at
 
@@ -77,12 +85,12 @@ contains
     !> Where neither inertia nor damper has a say, it is the balance's. Else, unless it is that
     !> within the tolerated error, the slip rate may grow by so much only: where the traction comes
     !> to balance far more slowly at the end of a step than at its start, the estimate of the error
-    !> sees nothing.
-    subroutine balance(block, t, weight, tried)
+    !> sees nothing. Nor does it see what velocity a traction means that is known to all its digits:
+    !> where that grows it has to be the one that momentum tells.
+    subroutine balance(block, t, weights, tried)
         type(moving_block), intent(in) :: block
-        real(dp), intent(in) :: t             !! [T]
-        real(dp), intent(in) :: weight        !! inverse of the tolerated error of the traction's
-                                              !! elastic displacement
+        real(dp), intent(in) :: t                     !! [T]
+        real(dp), intent(in) :: weights(controlled)   !! inverse of the tolerated errors
         type(trial), intent(inout) :: tried
         real(dp), parameter :: no_say = 1.0e-8_dp   !! part
         real(dp), parameter :: most = 3.0_dp        !! logarithm of the growth
@@ -91,6 +99,8 @@ contains
 
         associate (eq => block%equations, before => block%first(slip), &
             after => tried%last(slip))
+            if (after > before) tried%error = max(tried%error, abs(tried%y(velocity) &
+                - eq%sense_of(tried%y(elastic)) * after) * weights(velocity) / most_open)
             call eq%inputs(t + tried%h, tried%y, v_drive, pressure, pressure_rate)
             call eq%surface%resistance_at(eq%law_state_of(tried%y, pressure), after, pressure, &
                 resistance, by_rate)
@@ -98,7 +108,7 @@ contains
                 tried%y(elastic) = eq%pull(tried%y) / (eq%area * eq%alpha)
                 call eq%rates(t + tried%h, tried%y, tried%last, failed)
                 if (failed) tried%error = huge(tried%error)
-            else if (after > before .and. eq%mass * abs(tried%last(velocity)) * weight &
+            else if (after > before .and. eq%mass * abs(tried%last(velocity)) * weights(elastic) &
                 > eq%area * eq%alpha) then
                 tried%error = max(tried%error, (log(after / max(before, tiny(before))) / most)**4)
             end if

@@ -293,6 +293,59 @@ class Phases(Program):
         for row in slow:
             self.assertAlmostEqual(row['friction_force'], row['spring_force'], delta=1e-4 * 4.8)
 
+    def test_a_rigid_contact_whose_state_a_rising_pressure_has_made_young_leaves_its_block_alone(self):
+        # theta goes with p^-3 from where the contact closes: friction is round-off of the force that it has at other times, and
+        # the traction tells no velocity; ln(v theta/d_c)' = -(v/d_c) ln(v theta/d_c) - 3/t, v that of the drive
+        d_c, v, rtol, ramp, end = 0.05, 1e-3, 1e-6, 0.1, 1
+        rows, energies = self.table(f"""&friction law='linker_dieterich', alpha_n=1000, alpha_t=100, a=0.01, b=0.03, d_c={d_c}, v0=1e-6, f0=0.5,
+                alpha=0.09, evolution='slip', contact='rigid' /
+            &slider mass=2.5, stiffness=25, normal_traction=0 /
+            &drive velocity={v}, duration={ramp}, 1, normal=1, 1, normal_change='ramp' /
+            &initial velocity={v} /
+            &time t_end={end}, rtol={rtol} /""")
+        closed = 0.01 * math.sqrt(rtol) * ramp
+        slices = 2000   # in ln t
+        width = math.log(ramp / closed) / slices
+        times = [closed * math.exp((i + 0.5) * width) for i in range(slices)]
+        expected = math.log(1e6 * v) * math.exp(-v / d_c * (end - closed)) - sum(3 * width * math.exp(-v / d_c * (end - t)) for t in times)
+        self.assertAlmostEqual(math.log(rows[-1]['velocity'] * rows[-1]['theta'] / d_c), expected, delta=1e-4)
+        self.assertAlmostEqual(rows[-1]['displacement'], v * end, delta=1e-6 * v * end)
+        self.assertLess(abs(energies['unbalanced']), 1e-6 * energies['drive'] + 1e-15)
+        self.assertLess(len(rows), 500)
+
+    def test_steps_of_a_rigid_contact_are_few_from_where_a_ramp_closes_it(self):
+        # a p is far smaller than what derivatives by the traction were taken over: steps of 1e-13
+        rows, _ = self.table("""&friction law='linker_dieterich', alpha_n=1000, alpha_t=2258, a=1.931e-3, b=4.622e-3, d_c=6.204e-3, v0=1.1e-5,
+                f0=0.8037, alpha=3.38e-3, evolution='slip', contact='rigid' /
+            &slider mass=5.691e-3, stiffness=174.8, normal_traction=0 /
+            &drive velocity=9.683e-3, duration=0.2, 0.2, 0.2, 0.2, normal=83.87, 0, 83.87, 73.85, normal_change='ramp' /
+            &time t_end=1, rtol=3.5e-8 /""")
+        self.assertLess(len(rows), 2000)
+
+    def test_a_rigid_contact_that_lets_go_gives_its_block_no_velocity(self):
+        # slip rates grow by 57 e-folds within a step, while the traction is known to all its digits: 9e-3 out of nothing
+        places = []
+        for rtol in (1e-8, 1e-9):
+            rows, energies = self.table(f"""&friction law='flash_heating', alpha_n=1000, alpha_t=8771, a=3.549e-3, b=1.177e-3, d_c=0.01659,
+                    v0=1.756e-4, f0=0.8188, f_w=0.5271, v_w=2.524e-4, contact='rigid' /
+                &slider mass=3.252e-3, stiffness=119.1, normal_traction=8.995 /
+                &drive velocity=5.149e-4, normal_amplitude=11.17, normal_frequency=206.2 /
+                &time t_end=0.0183, rtol={rtol} /""")
+            places.append(rows[-1]['displacement'])
+            self.assertLess(abs(energies['unbalanced']), 1e-3 * energies['drive'])
+        self.assertAlmostEqual(places[0], places[1], delta=1e-3 * places[1])
+
+    def test_a_rigid_contact_that_stops_comes_to_balance_in_less_than_time_can_tell(self):
+        # by 4e16 a second, where times are 1e-18 apart
+        rows, energies = self.table("""&friction law='flash_heating', alpha_n=1000, alpha_t=1229, a=0.02176, b=0.01352, d_c=5.661e-3, v0=4.248e-3,
+                f0=0.7834, f_w=0.5785, v_w=5.938e-3, contact='rigid' /
+            &slider mass=0.05262, stiffness=527.6, damping=0.8834, normal_traction=0 /
+            &drive velocity=5.434e-4, duration=0.02176, 0.02176, 0.02176, 0.02176, normal=1.006, 0, 1.006, 0.3558, normal_change='ramp' /
+            &initial velocity=5.833e-3 /
+            &time t_end=0.1088, rtol=1e-7 /""")
+        self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])
+        self.assertAlmostEqual(rows[-1]['friction_force'], rows[-1]['spring_force'], delta=1e-6)
+
     def test_a_massless_undamped_block_follows_a_load_that_falls_at_once(self):
         # both springs give up (drop)^2/2 (1/alpha + area/stiffness), and more as they push on: it ends in balance
         for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
