@@ -135,10 +135,12 @@ contains
         type(moment), intent(in) :: old, new
         logical :: yes
         real(dp), parameter :: even = 0.02_dp   !! part of the velocity
+        real(dp), parameter :: least = 64.0_dp * epsilon(1.0_dp)   !! part of the time, that can be
+                                                                   !! told in parts
         real(dp) :: mean
 
         yes = .false.
-        if (.not. self%inertia) return
+        if (.not. self%inertia .or. new%time - old%time < least * new%time) return
         ! a parabola that is not negative is three times its mean at most
         if (3.0_dp * (new%slip - old%slip) <= limit(self) * (new%time - old%time)) return
         mean = mean_velocity(self, old, new)
@@ -353,7 +355,7 @@ contains
         times = [self%middle, self%since%time + 0.5_dp * steps(2)]
         rates = [self%rate, limit(self), slip_rate]
         speed = self%driving + self%yielding
-        if (minval(rates) > speed) then
+        if (minval(rates) > speed .and. times(2) > times(1)) then
             rates = log(rates - speed)
             times = times - (rates(1) - rates(3)) / (times(2) - times(1)) * steps**2 / 24.0_dp
         end if

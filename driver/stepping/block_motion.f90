@@ -2,8 +2,8 @@
 module block_motion
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : facts => law_facts, friction_facts, law_state, onset_drops, &
-        onset_gradual, prop_alpha_n, prop_alpha_t, read_surface, statev_dissipation, statev_mu, &
-        statev_r, statev_slip, statev_status, statev_u_et, statev_u_n
+        onset_gradual, prop_alpha_n, prop_alpha_t, read_surface, sliding_surface, &
+        statev_dissipation, statev_mu, statev_r, statev_slip, statev_status, statev_u_et, statev_u_n
     use law_facts, only : typical_strength
     use run_settings, only : settings
     use slider_rates, only : along, away, controlled, damped, dissipated, drive_work, elastic, &
@@ -38,6 +38,9 @@ contains
         !> By trial on the inertial case of docs/driver.md: when the next event comes is decided by
         !> what the law remembers, how many steps are taken by the contact spring.
         real(dp), parameter :: stiff_sizes(along) = [1.5_dp, 1.5_dp, 1.5_dp, 0.3_dp, 1.0_dp]
+        real(dp), parameter :: margin = 256.0_dp
+        real(dp), parameter :: inverse_step = 1.0e8_dp   !! of derivatives, by natural sizes
+        real(dp) :: told   !! round-off of forces, as a velocity [L/T]
         type(facts) :: law
         real(dp) :: force, stiffness
         integer :: status
@@ -60,7 +63,12 @@ contains
             if (.not. eq%rigid) stiffness = stiffness + run%area * eq%alpha
             natural = 1.0_dp
             natural(extension) = force / stiffness
-            if (run%mass > 0.0_dp) natural(velocity) = force / sqrt(stiffness * run%mass)
+            if (run%mass > 0.0_dp) then
+                natural(velocity) = force / sqrt(stiffness * run%mass)
+                told = epsilon(1.0_dp) * force / max(sqrt(stiffness * run%mass), run%damping)
+                eq%falling = max(falls_by(eq%surface, largest), margin * told / run%rtol)
+                natural(velocity) = min(natural(velocity), inverse_step * sqrt(eq%falling * told))
+            end if
             natural(elastic) = force / (run%area * eq%alpha)
             if (eq%surface%traits%weight * largest > 0.0_dp) natural(memory) = force &
                 / (run%area * largest * eq%surface%traits%weight)
@@ -71,6 +79,19 @@ contains
                 / run%across%mass)
         end associate
     end subroutine set_up
+
+    !> Velocity by which friction falls that falls with it: without end if it does not [L/T].
+    pure function falls_by(surface, pressure) result(v)
+        type(sliding_surface), intent(in) :: surface
+        real(dp), intent(in) :: pressure   !! [F/L^2]
+        real(dp) :: v, resistance, by_rate
+
+        v = 1.0e200_dp   ! it does not
+        if (surface%traits%onset /= onset_drops) return
+        call surface%resistance_at(law_state(mu=0.0_dp, r=0.0_dp), 0.0_dp, pressure, resistance, &
+            by_rate)
+        if (by_rate < 0.0_dp) v = min(v, resistance / (-by_rate))
+    end function falls_by
 
     !> What the errors are compared with of unknowns that grow beyond their natural sizes: their
     !> own, but not less than the amplitude of the contact's ringing.

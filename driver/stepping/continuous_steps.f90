@@ -46,6 +46,7 @@ module continuous_steps
         logical :: implicit = .false.           !! steps by Rodas4
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
         logical :: jumped = .false.             !! slip had no rate in the last attempt
+        real(dp) :: passed = 0.0_dp             !! since the time of the step's start, in parts [T]
         type(oscillation) :: ringing            !! of a contact that sticks
         type(oscillation) :: swinging           !! on the drive spring alone
         type(oscillation) :: lifting            !! of the motion across the interface
@@ -58,7 +59,7 @@ module continuous_steps
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
-        procedure, private :: begin, attempt, swing_on, locate, choose_method, set_weights, &
+        procedure, private :: begin, go_on, attempt, swing_on, locate, choose_method, set_weights, &
             choose_unknown, fill
     end type continuous
 
@@ -97,6 +98,7 @@ contains
             end if
             self%weights = 1.0_dp / (self%rtol * self%natural)
             self%swinging = oscillation_of(eq%mass, eq%stiffness, eq%damping)
+            self%ringing = self%swinging
             if (.not. eq%rigid) self%ringing = oscillation_of(eq%mass, eq%stiffness + eq%area &
                 * eq%alpha, eq%damping + eq%area * eq%damper)
             self%lifting = oscillation_of(eq%across%mass, eq%across%stiffness + eq%area &
@@ -113,50 +115,66 @@ contains
         end associate
     end subroutine prepare
 
+    !> One step, of parts where what happens is over in less than the time can tell.
     subroutine step(self, old, new, report)
         class(continuous), intent(inout) :: self
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
+        integer, parameter :: most_parts = 10000
+        real(dp) :: end
+        integer :: piece, i
+
+        self%passed = 0.0_dp
+        end = old%time
+        do i = 1, most_parts
+            call self%begin(old, piece)
+            call self%go_on(old%time, piece, end, report)
+            if (report%status < 0) return
+            if (end > old%time) exit
+        end do
+        if (end > old%time) then
+            call self%fill(end, piece, old, new)
+        else
+            report%status = friction_no_convergence
+        end if
+    end subroutine step
+
+    !> Takes the block through one step, or a part of one.
+    subroutine go_on(self, t, piece, end, report)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t           !! of its start, but for what has passed since [T]
+        integer, intent(in) :: piece
+        real(dp), intent(out) :: end        !! [T]; not after the start: it is not over
+        type(step_report), intent(inout) :: report
         type(trial) :: tried
-        real(dp) :: end, wanted, stable, before, opening, slipped
+        real(dp) :: wanted, stable, slipped
         real(dp) :: h, error   ! of the step in whole, before it ends with a phase
-        integer :: piece
         logical :: again
 
-        call self%begin(old, piece)
         again = .false.
         do
             stable = longest(self)
             wanted = min(merge(stable, self%dt, self%swings), self%dt_max, stable)
-            end = end_of_step(old%time, wanted, self%limit)
-            associate (eq => self%block%equations)
-                if (.not. (eq%steady .or. eq%across%free())) then
-                    call find_opening(self%drive, piece, eq%open_below, eq%phase == phase_open, &
-                        old%time, end, before, opening)
-                    end = min(end, opening)
-                end if
-            end associate
-            tried%h = end - old%time
-            call self%attempt(old%time, tried)
+            call plan(self, t, piece, wanted, end, tried%h)
+            call self%attempt(t, tried)
             h = tried%h
             error = tried%error
-            if (tried%error <= 1.0_dp) call self%locate(old%time, tried)
+            if (tried%error <= 1.0_dp) call self%locate(t, tried)
             if (tried%error <= 1.0_dp) exit
             again = .true.
-            if (.not. self%can_shorten(old%time, tried%h, tried%error)) then
-                if (stopped(self%block, old%time, lost * old%time)) then
-                    call settle(self%block, old%time)
+            if (.not. self%can_shorten(t, tried%h, tried%error)) then
+                if (stopped(self%block, t, lost * t)) then
+                    call settle(self%block, t)
                     call know_velocity(self%block)
-                    self%dt = 1.0e3_dp * shortest * old%time
-                    cycle
+                    self%dt = 1.0e3_dp * shortest * t
+                else if (.not. can_part(self, t)) then
+                    report%status = merge(friction_no_rate, friction_no_convergence, jumps(self, t))
+                    return
                 end if
-                report%status = merge(friction_no_rate, friction_no_convergence, jumps(self, &
-                    old%time))
-                return
             end if
         end do
-        if (tried%switch > 0 .or. tried%h < end - old%time) end = old%time + tried%h
+        call pass_time(self, t, tried, end)
         if (.not. self%swings) then
             call self%lengthen(h, error, wanted, again)
             call self%choose_method(tried, stable)
@@ -171,8 +189,60 @@ contains
             if (tried%switch > 0 .and. .not. waits(eq, tried%switch)) call change_phase(block, &
                 end, tried%switch)
         end associate
-        call self%fill(end, piece, old, new)
-    end subroutine step
+    end subroutine go_on
+
+    !> Where a step is to end, and its length. The end is a time that can be told, which a short
+    !> step does not wait for.
+    subroutine plan(self, t, piece, wanted, end, h)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t         !! of its start [T]
+        integer, intent(in) :: piece
+        real(dp), intent(in) :: wanted    !! [T]
+        real(dp), intent(out) :: end, h   !! [T]
+        real(dp) :: before, opening
+
+        end = end_of_step(t, self%passed + wanted, self%limit)
+        associate (eq => self%block%equations)
+            if (.not. (eq%steady .or. eq%across%free())) then
+                call find_opening(self%drive, piece, eq%open_below, eq%phase == phase_open, t, &
+                    end, before, opening)
+                end = min(end, opening)
+            end if
+        end associate
+        h = (end - t) - self%passed
+        if (is_short(t, h) .and. .not. end < t + (self%passed + wanted)) h = wanted
+    end subroutine plan
+
+    !> Is a step not much longer than what its time can tell?
+    pure function is_short(t, h) result(yes)
+        real(dp), intent(in) :: t, h   !! [T]
+        logical :: yes
+
+        yes = h < 4.0_dp * shortest * t
+    end function is_short
+
+    !> The time at the end of a step that was planned, which may have ended earlier.
+    subroutine pass_time(self, t, tried, end)
+        class(continuous), intent(inout) :: self
+        real(dp), intent(in) :: t         !! of its start [T]
+        type(trial), intent(in) :: tried
+        real(dp), intent(inout) :: end    !! as planned; then the time that can be told [T]
+        real(dp) :: passed
+
+        passed = self%passed + tried%h
+        if (tried%switch > 0 .or. passed < end - t .or. is_short(t, tried%h)) end = t + passed
+        self%passed = passed
+    end subroutine pass_time
+
+    !> May a step have parts that are shorter than what the time can tell?
+    pure function can_part(self, t) result(yes)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        logical :: yes
+
+        yes = .not. (self%dt_min > 0.0_dp .or. jumps(self, t)) .and. self%dt > epsilon(t) &
+            * shortest * t
+    end function can_part
 
     !> Does the next step begin with the next phase: with a contact that opens or closes, or with a
     !> block that jumps?
@@ -478,6 +548,13 @@ contains
 
         call set_growing_weights(self%block%equations%acting, self%rtol, self%natural, &
             self%block%y, self%weights)
+        associate (eq => self%block%equations, y => self%block%y)
+            ! how fast friction falls is decided by velocities that are a small part of an event's
+            if (eq%falling < self%natural(velocity)) self%weights(velocity) = 1.0_dp / (self%rtol &
+                * max(eq%falling, abs(y(velocity))))
+            ! friction that has weakened for good does not ask how far it slips
+            if (y(memory) > eq%surface%traits%kink) self%weights(memory) = 0.0_dp
+        end associate
         if (.not. self%reloaded) return
         call self%block%equations%inputs(t, self%block%y, v_drive, pressure, pressure_rate)
         pressure = max(pressure, self%block%equations%open_below, &
@@ -571,11 +648,20 @@ contains
             tried = again
             if (g(which) > 0.0_dp .and. g(which) <= enough) exit
             middle = bracket%guess()
-            if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * shortest * t)) exit
+            if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * told(t, bracket%high))) exit
         end do
         if (g(which) <= 0.0_dp) call pass(self, t, which, bracket%high, tried)
         tried%switch = which
     end subroutine locate
+
+    !> What a time can tell, in a step that is not a part of one [T].
+    pure function told(t, h) result(dt)
+        real(dp), intent(in) :: t, h   !! time, length of the step [T]
+        real(dp) :: dt
+
+        dt = shortest * t
+        if (is_short(t, h)) dt = 0.0_dp
+    end function told
 
     !> Takes a step that ends just before its phase does again, until it ends just after: the next
     !> phase starts where this one has ended.
@@ -591,7 +677,7 @@ contains
         integer :: i
 
         again = tried
-        nudge = max(1.0e-12_dp * tried%h, shortest * t)
+        nudge = max(1.0e-12_dp * tried%h, told(t, latest))
         do i = 1, most_tries
             again%h = min(latest, again%h + nudge)
             nudge = 2.0_dp * nudge

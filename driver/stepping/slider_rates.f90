@@ -33,7 +33,7 @@ module slider_rates
     integer, parameter, public :: phase_slide = 2    !! as the law says
     integer, parameter, public :: phase_capped = 3   !! as the shear cap says
 
-    real(dp), parameter :: too_fast = 1.0e100_dp   !! for rates that are to be squared [L/T]
+    real(dp), parameter :: too_large = 1.0e100_dp   !! for what is to be squared or multiplied
 
     type :: slider_equations
         type(sliding_surface) :: surface
@@ -49,6 +49,8 @@ module slider_rates
                                          !! velocity, which is the unknown
         type(normal_motion) :: across    !! the interface: there the pressure follows from `place`
         real(dp) :: alpha_n = 0.0_dp     !! normal stiffness of the contact [F/L^3]
+        real(dp) :: falling = 1.0e200_dp !! velocity by which friction falls that falls with it, as
+                                         !! far as round-off of the forces tells [L/T]
         real(dp) :: open_below = 0.0_dp  !! pressure that counts as none [F/L^2]
         type(programme) :: drive
         integer :: piece = 0             !! of the programme, in which the rates are taken
@@ -217,7 +219,8 @@ contains
             call elastic_contact(self, y, v_drive, pressure, pressure_rate, contact, failed)
         end if
         ! stages of a step that is going to be refused may be anywhere
-        failed = failed .or. max(abs(contact%velocity), abs(contact%slip)) > too_fast
+        failed = failed .or. max(abs(contact%velocity), abs(contact%slip), abs(contact%traction)) &
+            > too_large
         if (failed) then
             dy = 0.0_dp
             return

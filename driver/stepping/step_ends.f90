@@ -128,7 +128,8 @@ contains
         character(len=:), allocatable :: why
         character(len=10) :: limit
 
-        why = 'the error exceeds rtol even in steps as short as the round-off of the time'
+        why = 'the error exceeds rtol even in steps as short as the round-off of the time, which ' &
+            // 'is finer in a run that starts (&initial) shortly before'
         if (.not. dt_min > 0.0_dp) return
         write (limit, '(es10.3)') dt_min
         why = 'the error exceeds rtol even in steps as short as dt_min = ' // trim(adjustl(limit))

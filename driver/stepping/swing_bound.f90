@@ -27,13 +27,15 @@ contains
         type(oscillation) :: swings
         real(dp), parameter :: one_radian = 3.0e-4_dp   !! damping ratio that allows this
         real(dp), parameter :: most_damped = 0.5_dp     !! stability is as on the real axis
+        real(dp), parameter :: decaying = 3.0_dp        !! what decays is stable there
         real(dp) :: ratio
 
         if (.not. mass > 0.0_dp) return
         ratio = 0.5_dp * damping / sqrt(stiffness * mass)
-        if (ratio > most_damped) return
         swings%radian = sqrt(mass / stiffness)
-        swings%phase = (ratio / one_radian)**(1.0_dp / 7.0_dp)
+        swings%phase = (min(ratio, most_damped) / one_radian)**(1.0_dp / 7.0_dp)
+        if (ratio > most_damped) swings%phase = decaying
+        if (ratio > 1.0_dp) swings%radian = swings%radian / (ratio + sqrt(ratio**2 - 1.0_dp))
     end function oscillation_of
 
     !> The longest explicit step that does not amplify the swings [T].

@@ -346,6 +346,44 @@ class Phases(Program):
         self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])
         self.assertAlmostEqual(rows[-1]['friction_force'], rows[-1]['spring_force'], delta=1e-6)
 
+    def first_event(self, law, slider, time, before_onset):
+        """Of a rigid contact that is loaded from nothing for 1e9 s or more, or from just below its strength."""
+        events = []
+        for mu, t_end in ((0, time), (before_onset, 1e8)):
+            self.table(f"""&friction law={law}, alpha_n=1000, alpha_t=1000, contact='rigid' /
+                &slider mass=1, stiffness=1, normal_traction=1, {slider} /
+                &drive velocity=1e-10 /
+                &initial mu={mu} /
+                &time t_end={t_end}, rtol=1e-6 /""")
+            event, *_ = self.rows('case_out/case_events.csv')
+            events.append({key: float(value) for key, value in event.items()})
+        return events
+
+    def test_what_is_over_in_less_than_a_long_time_can_tell_is_followed_all_the_same(self):
+        # friction falls within 2e-7 s where times are 1e-6 apart
+        late, early = self.first_event("'slip_weakening_healing', mu_s=0.6, mu_k=0.4, d_c=1e-14, xi=1e-10", 'damping=0.1', 6.5e9,
+                                       0.599999999)
+        for key, part in (('stress_drop', 1e-6), ('slip', 1e-6), ('duration', 1e-4)):
+            self.assertAlmostEqual(late[key], early[key], delta=part * early[key])
+
+    def test_a_damped_block_stops_where_friction_that_falls_with_speed_makes_it(self):
+        # at 18 of the drive's speed, a part in 5e5 of that of the event, from which on steps did not see it
+        late, early = self.first_event("'static_kinetic', mu_s=0.5, mu_k=0.4, d_c=1e11", 'damping=120', 6.9e9, 0.499999999)
+        for key, part in (('stress_drop', 1e-6), ('slip', 1e-6), ('duration', 1e-4)):
+            self.assertAlmostEqual(late[key], early[key], delta=part * early[key])
+        self.assertAlmostEqual(late['stress_drop'], 0.0999999769367036, delta=1e-12)   # scipy's Radau
+        self.assertAlmostEqual(late['duration'], 1922.5788, delta=1e-3)
+
+    def test_a_block_on_a_rigid_contact_that_has_weakened_for_good_slides_in_few_steps(self):
+        # v = V (1 - cos) goes to rest again and again in steps from rest that were too long, and in those that D asked for
+        for damping in (0, 8.4e-4):
+            rows, _ = self.table(f"""&friction law='slip_weakening', mu_s=0.6566, mu_k=0.2394, d_c=1.5e-5, alpha_n=1000, alpha_t=1000,
+                    contact='rigid' /
+                &slider mass=1.023, stiffness=0.508, damping={damping}, normal_traction=0.643 /
+                &drive velocity=1e-10 /
+                &time t_end=1.97777e10, rtol=2e-8 /""")
+            self.assertLess(len(rows), 1000)
+
     def test_a_massless_undamped_block_follows_a_load_that_falls_at_once(self):
         # both springs give up (drop)^2/2 (1/alpha + area/stiffness), and more as they push on: it ends in balance
         for law in ("'coulomb', mu=0.5", "'slip_weakening', mu_s=0.5, mu_k=0.4, d_c=1", "'slip_weakening_healing', mu_s=0.5, mu_k=0.4, "
