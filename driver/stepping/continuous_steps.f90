@@ -369,7 +369,8 @@ contains
             self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
         end if
         call self%set_weights(old%time)
-        if (self%block%equations%creeps_along()) call self%choose_unknown(old%time)
+        if ((self%reloaded .or. self%block%equations%rigid) .and. &
+            self%block%equations%creeps_along()) call self%choose_unknown(old%time)
         self%swings = swings_freely(self)
     end subroutine begin
 
@@ -571,20 +572,22 @@ contains
         end if
     end subroutine set_weights
 
-    !> Velocity or traction of a rigid contact that creeps: each tells the other. The traction is
-    !> the unknown, unless its tolerated error leaves the velocity open by many times its own: of a
-    !> surface that carries next to nothing the traction tells no velocity at all.
+    !> Velocity or traction of a contact that creeps. Of a rigid one each tells the other: the
+    !> traction is the unknown, unless its tolerated error leaves the velocity open by many times
+    !> its own. Of a surface that carries next to nothing the traction tells no velocity at all, nor
+    !> does that of a contact spring, which is left out if it is much less than its tolerated error.
     subroutine choose_unknown(self, t)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t   !! [T]
-        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate
+        real(dp) :: v_drive, pressure, pressure_rate, resistance, by_rate, many
         logical :: by_velocity
 
+        many = merge(most_open, most_open / self%rtol, self%block%equations%rigid)
         associate (block => self%block, eq => self%block%equations)
             call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
-            call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), block%first(slip), &
-                pressure, resistance, by_rate)
-            by_velocity = most_open * by_rate * self%weights(elastic) < self%weights(velocity) &
+            call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), &
+                abs(block%y(velocity)), pressure, resistance, by_rate)
+            by_velocity = many * by_rate * self%weights(elastic) < self%weights(velocity) &
                 * eq%alpha
             if (by_velocity .eqv. eq%by_velocity) return
             eq%by_velocity = by_velocity

@@ -45,7 +45,7 @@ module slider_rates
         real(dp) :: least_share = 0.0_dp !! R beside a damper grows as from here at least: its rate
                                          !! at 0 has no bound, its way from there is short [-]
         logical :: rigid = .false.       !! the contact has no spring
-        logical :: by_velocity = .false. !! where that creeps: its traction follows the block's
+        logical :: by_velocity = .false. !! where it creeps, its traction follows the block's
                                          !! velocity, which is the unknown
         type(normal_motion) :: across    !! the interface: there the pressure follows from `place`
         real(dp) :: alpha_n = 0.0_dp     !! normal stiffness of the contact [F/L^3]
@@ -206,7 +206,8 @@ contains
             call swinging_contact(self, y, contact, failed)
         else if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
             call damped_contact(self, y, force, v_drive, pressure, pressure_rate, contact, failed)
-        else if (self%rigid .and. self%phase /= phase_open) then
+        else if (self%rigid .and. self%phase /= phase_open .or. self%by_velocity .and. self%phase &
+            == phase_slide) then
             if (self%follows_traction()) then
                 call following_contact(self, y, force, pressure, pressure_rate, contact)
                 failed = .false.
@@ -615,14 +616,14 @@ contains
         yes = dy(slip) > far * moved .and. .not. self%rigid
     end function runs_away
 
-    !> Is it a block with a mass on a rigid contact that creeps? Its velocity and its traction tell
-    !> each other.
+    !> Is it a block with a mass on a contact that creeps? Without a contact spring its velocity and
+    !> its traction tell each other, and nearly so beside one if the traction is next to nothing.
     pure function creeps_along(self) result(creeps)
         class(slider_equations), intent(in) :: self
         logical :: creeps
 
-        creeps = self%rigid .and. self%phase == phase_slide .and. self%mass > 0.0_dp &
-            .and. self%surface%traits%onset == onset_gradual
+        creeps = self%surface%traits%stiff .and. self%phase == phase_slide .and. self%mass &
+            > 0.0_dp .and. .not. self%damper > 0.0_dp
     end function creeps_along
 
     !> Is its velocity that of its slip under the traction? Then that is an unknown, in the place of
@@ -631,7 +632,7 @@ contains
         class(slider_equations), intent(in) :: self
         logical :: follows
 
-        follows = self%creeps_along() .and. .not. self%by_velocity
+        follows = self%rigid .and. self%creeps_along() .and. .not. self%by_velocity
     end function follows_traction
 
     !> A rigid contact that creeps, on a block with a mass: `traction(v, theta, p)` changes as its
@@ -720,7 +721,8 @@ contains
         tau = 0.0_dp
         if (self%phase == phase_open) return
         tau = self%alpha * y(elastic)
-        if (.not. (self%rigid .or. self%damper > 0.0_dp) .or. self%follows_traction()) return
+        if (.not. (self%rigid .or. self%damper > 0.0_dp .or. self%by_velocity .and. self%phase &
+            == phase_slide) .or. self%follows_traction()) return
         call inputs(self, t, y, v_drive, pressure, pressure_rate)
         if (self%damper > 0.0_dp) then
             call damped_contact(self, y, self%pull(y), v_drive, pressure, pressure_rate, contact, &

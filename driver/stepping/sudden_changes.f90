@@ -46,7 +46,7 @@ contains
         real(dp), intent(in) :: pressure   !! [F/L^2]
         real(dp) :: resistance, by_rate
 
-        if (.not. block%equations%creeps_along()) return
+        if (.not. (block%equations%rigid .and. block%equations%creeps_along())) return
         associate (eq => block%equations)
             call eq%surface%resistance_at(eq%law_state_of(block%y, pressure), &
                 abs(block%y(velocity)), pressure, resistance, by_rate)
