@@ -43,7 +43,7 @@ module friction_batch_kernel
         real(wp) :: work_ratio(lanes)     !! work of the traction over slip and T_eq [-]
         real(wp) :: squeezed(lanes)  !! how much the strength depends on the direction [-]
         real(wp) :: share(lanes)     !! of q that stays elastic [-]
-        real(wp) :: coupling(lanes)  !! alpha_t/D of docs/theory.md, section 4; 0 in stick [-]
+        real(wp) :: coupling(lanes)  !! alpha_t/D of docs/theory.md, section 4 [-]
         real(wp) :: d_slip(lanes)    !! d(resistance)/d(slip) [F/L^3]
         real(wp) :: by_du_n(lanes)   !! along the slip, by the normal displacement [F/L^3]
     end type answer_block
@@ -732,17 +732,16 @@ contains
         type(trial_block), intent(in) :: trial
         type(slide_block), intent(in) :: slid
         type(answer_block), intent(out) :: answer
-        real(wp) :: force, total, slides, along, shared
+        real(wp) :: force, total, along, shared
         integer :: i
 
         do i = 1, lanes
             force = max(trial%rest%traction(i), least)
             total = max(trial%stiffness(i) + slid%d_slip(i), epsilon(1.0_wp) * trial%stiffness(i))
             shared = 1.0_wp / (force * total)   ! one division for two
-            slides = merge(constants(i, c_alpha_t), 0.0_wp, trial%slides(i) > 0)
             along = merge(trial%stiffness(i), 0.0_wp, trial%slides(i) > 0)
             answer%per_traction(i) = total * shared
-            answer%coupling(i) = slides * force * shared
+            answer%coupling(i) = constants(i, c_alpha_t) * force * shared
             answer%t1(i) = trial%q1(i) * (along * answer%per_traction(i))
             answer%t2(i) = trial%q2(i) * (along * answer%per_traction(i))
             answer%work_ratio(i) = 1.0_wp
