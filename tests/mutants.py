@@ -47,7 +47,7 @@ SCRIPTS = ('test_host_errors', 'test_mgis')   # among the tests, those that reac
 MOST = 2000   # mutants of a file
 NO_STATEMENT = re.compile(r'^\s*($|!|use |end\b|contains|implicit|private|public|import|interface|abstract|module |submodule'
                           r'|(pure |elemental |module |recursive )*(subroutine|function)\b|procedure|type\b|else$|select|case )')
-CONDITION = re.compile(r'^(\s*)if \(.*\) (return|exit|cycle|\w+(%\w+)* = .*)$')
+CONDITION = re.compile(r'^(\s*)if \(.*\) (return|exit|cycle|\w+(%\w+|\([^()]*\))* = .*)$')
 
 
 class Mutant:
