@@ -554,7 +554,8 @@ contains
             if (eq%falling < self%natural(velocity)) self%weights(velocity) = 1.0_dp / (self%rtol &
                 * max(eq%falling, abs(y(velocity))))
             ! friction that has weakened for good does not ask how far it slips
-            if (y(memory) > eq%surface%traits%kink) self%weights(memory) = 0.0_dp
+            self%weights(memory) = merge(0.0_dp, 1.0_dp / (self%rtol * self%natural(memory)), &
+                y(memory) > eq%surface%traits%kink)
         end associate
         if (.not. self%reloaded) return
         call self%block%equations%inputs(t, self%block%y, v_drive, pressure, pressure_rate)

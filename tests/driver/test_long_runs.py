@@ -1,4 +1,5 @@
 """Runs that stop before their end, and go on: checkpoints, --resume, interrupts; and --verify."""
+import itertools
 import os
 import random
 import re
@@ -89,6 +90,30 @@ class StopAndGo(LongRun):
     @release_only
     def test_interrupted_steps_resume_to_the_same_bytes(self):
         self.stop_and_go(ADAPTIVE, signal.SIGINT, 3)
+
+    def test_steps_by_their_error_need_nothing_but_the_state_under_every_law(self):
+        # cut where the tables have a part of their size, a run goes on to the same bytes; it did not once D had been beyond d_c
+        creep = 'a=0.012, b=0.01, d_c=0.05, v0=1, f0=0.5'
+        weakening = 'mu_s=0.6, mu_k=0.3'
+        laws = (f"'subloading', {weakening}, kappa=10, xi=1, m=100", "'coulomb', mu=0.5", f"'static_kinetic', {weakening}, d_c=0.2",
+                f"'slip_weakening', {weakening}, d_c=0.1", f"'slip_weakening_healing', {weakening}, d_c=0.05, xi=7, tau_max=0.25",
+                f"'rate_and_state', {creep}", f"'flash_heating', {creep}, f_w=0.2, v_w=2", f"'linker_dieterich', {creep}, alpha=0.005")
+        for law, mass, load in itertools.product(laws, (0, 1e-2), ('', ', normal_amplitude=0.4, normal_frequency=0.7')):
+            text = f"""&friction law={law}, alpha_n=100, alpha_t=30 /
+                &slider mass={mass}, stiffness=1, damping=0.1, normal_traction=1 /
+                &drive velocity=1, -0.5, 0, 1, duration=1.5, 1, 2, 1, normal=1, 0.7, 0.7, 1 {load} /
+                &time t_end=5.5, rtol=1e-5 / &output table_limit=10 /"""
+            with self.subTest(law=law, mass=mass, load=load):
+                self.whole_run(text)
+                size = sum(file.stat().st_size for file in (self.folder / 'whole').glob('*.csv'))
+                for part in (0.3, 0.5, 0.7, 0.9):
+                    shutil.rmtree(self.folder / 'parts', ignore_errors=True)
+                    (self.folder / 'case.nml').write_text(text.replace('table_limit=10', f'table_limit={part * size * 1e-9}'))
+                    self.assertEqual(self.run_program('run', 'case.nml', '--no-plot', '--output', 'parts').returncode, 1)
+                    (self.folder / 'case.nml').write_text(text)
+                    result = self.run_program('run', 'case.nml', '--no-plot', '--output', 'parts', '--resume')
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    self.assertTrue(self.results('parts') == self.results('whole'), part)
 
     def test_an_interrupt_says_so_and_leaves_whole_rows_and_a_checkpoint(self):
         (self.folder / 'case.nml').write_text(FIXED.replace('0.02\n', '1e9\n').replace("t_end = 40", "t_end = 4e4"))
