@@ -152,7 +152,7 @@ contains
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
         if (max(old%normal, new%normal) <= self%least_load(i)) return
         slides = now%slip > before%slip
-        way = new%x(1) - old%x(1)
+        way = way_of(old, new)
         if (.not. self%friction(i)%seen .and. old%time > self%drive%start(i) - aside) then
             load = old%normal
             if (self%prescribed) load = self%drive%normal_traction(old%time, i)
@@ -244,7 +244,7 @@ contains
             + self%law%damping * [old%a, new%a])
         if (self%rigid) then
             if (step%slides) step%force = self%sense(i) * sign(strength_at(self%law, &
-                step%coefficient, step%load), new%x(1) - old%x(1))
+                step%coefficient, step%load), way_of(old, new))
         else if (creeps(self%law)) then
             where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, abs(step%force) &
                 - self%law%cohesion) / step%load
@@ -273,6 +273,15 @@ contains
         follows = slip * self%holding * maxval(loads) > maxval(abs(step%force)) * (maxval(loads) &
             - minval(loads))
     end function follows_load
+
+    !> A number with the sense in which a block moves in a step, also less than its place can tell.
+    pure function way_of(old, new) result(way)
+        type(slider_state), intent(in) :: old, new
+        real(dp) :: way
+
+        way = old%v(1) + new%v(1)
+        if (.not. abs(way) > 0.0_dp) way = new%x(1) - old%x(1)
+    end function way_of
 
     !> Does slip come gradually under any traction, without a strength?
     pure function creeps(law) result(yes)
@@ -323,7 +332,7 @@ contains
         class(slip_watch), intent(in) :: self
         type(slider_state), intent(in) :: state
         real(dp), intent(in) :: load   !! normal traction [F/L^2]
-        real(dp), intent(in) :: way    !! that it slides [L]
+        real(dp), intent(in) :: way    !! with the sense of its slip
         real(dp) :: force              !! [F]
 
         force = sign(self%area * strength_at(self%law, state%statev(1, statev_mu), load), way)

@@ -10,7 +10,7 @@ module continuous_steps
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up
     use explicit_pairs, only : dormand_prince, explicit_pair, explicit_step, tsitouras
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        prop_alpha_n, statev_u_n
+        law_state, load_rates, prop_alpha_n, statev_u_n
     use free_swing, only : swing
     use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
         root_bracket, settle, switch_values, switches
@@ -56,6 +56,7 @@ module continuous_steps
         logical :: reloaded = .false.           !! it is not always the same
         type(swing) :: free                     !! of a block whose contact rests
         logical :: swings = .false.             !! the step is of that, in closed form
+        logical :: heals = .false.              !! at rest the law forgets how far it has slipped
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
@@ -89,6 +90,7 @@ contains
             if (eq%surface%traits%memory == 1) eq%open_below = self%largest * max(1.0e-6_dp, &
                 16.0_dp * epsilon(1.0_dp) / run%rtol)   ! R is lost in its round-off
             call eq%find_least_share(run%rtol)
+            self%heals = heals_at_rest(eq)
             if (max(eq%surface%cohesion, eq%surface%law%cohesion) > 0.0_dp) then
                 ! closed without pressure; slip that goes with an exponential needs some
                 if (eq%surface%traits%stiff) eq%least_pressure = max(eq%least_pressure, &
@@ -114,6 +116,18 @@ contains
             if (eq%rigid) call take_off_spring(self%block, start)
         end associate
     end subroutine prepare
+
+    pure function heals_at_rest(eq) result(heals)
+        type(slider_equations), intent(in) :: eq
+        logical :: heals
+        type(law_state) :: changes
+
+        heals = .false.
+        if (.not. eq%surface%traits%kink < huge(1.0_dp)) return
+        changes = eq%surface%state_rates(law_state(mu=0.0_dp, r=eq%surface%traits%kink), &
+            load_rates(0.0_dp, 0.0_dp, eq%alpha, 0.0_dp, 0.0_dp, .false.), 0.0_dp)
+        heals = changes%r < 0.0_dp
+    end function heals_at_rest
 
     !> One step, of parts where what happens is over in less than the time can tell.
     subroutine step(self, old, new, report)
@@ -555,7 +569,7 @@ contains
                 * max(eq%falling, abs(y(velocity))))
             ! friction that has weakened for good does not ask how far it slips
             self%weights(memory) = merge(0.0_dp, 1.0_dp / (self%rtol * self%natural(memory)), &
-                y(memory) > eq%surface%traits%kink)
+                y(memory) > eq%surface%traits%kink .and. .not. self%heals)
         end associate
         if (.not. self%reloaded) return
         call self%block%equations%inputs(t, self%block%y, v_drive, pressure, pressure_rate)

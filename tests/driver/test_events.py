@@ -338,6 +338,18 @@ class Pieces(Program):
                     &time t_end=500, rtol=1e-5 /""")
                 self.assertLess(pieces[1]['peak_friction'], 0.609 + 1e-5)
 
+    def test_friction_of_a_slow_block_has_the_sense_of_its_slip(self):
+        # slip of less than its place can tell had the sense of round-off: -0.57 was the least friction before the drive turned
+        piece = self.rows_of_pieces("""&friction law='static_kinetic', contact='rigid', alpha_n=1013, alpha_t=10.37,
+                mu_s=0.5681497053580651, mu_k=0.17413292178779957, d_c=769453.2332798745 /
+            &slider mass=0.1392872755924905, stiffness=2.0516656040948704, damping=0.6245162852881022,
+                area=1.3477346592536537, normal_traction=0.1775370376324402 /
+            &drive velocity=2.033218160503721e-06, -1.4161098965264841e-06, duration=37740.36715437742, 10,
+                normal_amplitude=0.02653160000182096, normal_frequency=1.4799848480664492e-05,
+                normal_phase=4.928393446836609 /
+            &time t_end=37750.36715437742, rtol=1e-5 /""")[0]
+        self.assertGreaterEqual(piece['least_friction'], 0)
+
     def test_friction_of_a_block_without_mass_is_that_up_to_its_jump(self):
         # the velocity after the jump, 300 times that of the drive, made friction swing to -0.8 in the step before
         for rtol in (1e-4, 1e-7):
