@@ -148,7 +148,8 @@ contains
         integer :: i
         logical :: turns, slides
 
-        aside = max(round_off * (new%time - old%time), 2.0_dp * spacing(new%time))
+        aside = round_off * (new%time - old%time)
+        if (aside < 2.0_dp * spacing(new%time)) aside = new%time - old%time   ! within one piece
         i = min(self%drive%listed, self%drive%piece(new%time - aside))
         if (max(old%normal, new%normal) <= self%least_load(i)) return
         slides = now%slip > before%slip

@@ -10,7 +10,7 @@ module continuous_steps
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up
     use explicit_pairs, only : dormand_prince, explicit_pair, explicit_step, tsitouras
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        law_state, load_rates, prop_alpha_n, statev_u_n
+        law_state, load_rates, onset_gradual, prop_alpha_n, statev_u_n
     use free_swing, only : swing
     use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
         root_bracket, settle, switch_values, switches
@@ -447,6 +447,7 @@ contains
         type(trial), intent(inout) :: tried   !! its length is given
         real(dp) :: scales(controlled, 2), growth
         integer, parameter :: explicit_rates = 6   !! evaluations of them in a step
+        real(dp), parameter :: refused = 1.0e4_dp  !! error of a step that is to be far shorter
 
         tried%switch = 0
         tried%error = huge(tried%error)
@@ -477,7 +478,33 @@ contains
         end if
         call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
         self%jumped = .not. tried%error < huge(tried%error)
+        if (tried%error <= 1.0_dp) then
+            if (slips_back(self, t, tried)) tried%error = refused
+        end if
     end subroutine attempt
+
+    !> Has a contact gone back while it slides, by more than the tolerated error, though its slip
+    !> rate at the end says it has not? Velocities of slow drives are less than their tolerated
+    !> error: a long step would miss the end of slip.
+    pure function slips_back(self, t, tried) result(yes)
+        class(continuous), intent(in) :: self
+        real(dp), intent(in) :: t   !! [T]
+        type(trial), intent(in) :: tried
+        logical :: yes
+        real(dp) :: way, change   ! of the block, of the contact's elastic displacement [L]
+
+        associate (eq => self%block%equations, y => self%block%y)
+            yes = eq%phase == phase_slide .and. eq%mass > 0.0_dp .and. .not. (eq%damper > 0.0_dp &
+                .or. eq%surface%traits%onset == onset_gradual) .and. tried%last(slip) >= 0.0_dp
+            if (.not. yes) return
+            way = self%drive%position(t + tried%h) - self%drive%position(t) - (tried%y(extension) &
+                - y(extension))
+            change = tried%y(elastic) - y(elastic)
+            if (eq%rigid) change = 0.0_dp
+            yes = eq%sense * (way - change) < -(1.0_dp / self%weights(extension) + 1.0_dp &
+                / self%weights(elastic))
+        end associate
+    end function slips_back
 
     !> May a disturbance grow that the tolerated error does not see? Long steps of Rodas4 would damp
     !> it: a block would slide steadily that is going to stick. Creep has steps for it anyway.

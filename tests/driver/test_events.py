@@ -338,6 +338,17 @@ class Pieces(Program):
                     &time t_end=500, rtol=1e-5 /""")
                 self.assertLess(pieces[1]['peak_friction'], 0.609 + 1e-5)
 
+    def test_a_slow_block_that_turns_back_slides_against_friction(self):
+        # its velocity is far below the tolerated error: one step of 2.5e7 s took it back under friction of the old sense
+        for contact in ('rigid', 'elastic'):
+            for mass in (5e-3, 0.1):
+                with self.subTest(contact=contact, mass=mass):
+                    pieces = self.rows_of_pieces(f"""&friction law='coulomb', mu=0.86, alpha_n=2500, alpha_t=1500, contact='{contact}' /
+                        &slider mass={mass}, stiffness=2.8, area=0.4, normal_traction=0.17 /
+                        &drive velocity=1.2e-9, -2.3e-9, 2.9e-9, duration=3.2e7, 2.5e7, 1e7, normal=0.18, 0.1, 0.2 /
+                        &time t_end=6.7e7, rtol=1e-5 /""")
+                    self.assertAlmostEqual(pieces[1]['last_friction'], 0.86, delta=1e-3)
+
     def test_friction_of_a_slow_block_has_the_sense_of_its_slip(self):
         # slip of less than its place can tell had the sense of round-off: -0.57 was the least friction before the drive turned
         piece = self.rows_of_pieces("""&friction law='static_kinetic', contact='rigid', alpha_n=1013, alpha_t=10.37,
