@@ -394,7 +394,7 @@ contains
         real(dp) :: dt, s
 
         dt = b%time - a%time
-        call find_turn([a%force, b%force], dt * [a%rate, b%rate], s, found)
+        call turn_of_cubic([a%force, b%force], dt * [a%rate, b%rate], s, found)
         if (.not. found) return
         between = between_moments(a, b, a%time + s * dt)
         between%rate = 0.0_dp
@@ -412,13 +412,13 @@ contains
         if (.not. a%acceleration * b%acceleration < 0.0_dp) return
         values = [a%velocity, b%velocity]
         rates = (b%time - a%time) * [a%acceleration, b%acceleration]
-        call find_turn(values, rates, s, turns)
+        call turn_of_cubic(values, rates, s, turns)
         if (turns) velocity = cubic(values, rates, s)
     end function velocity_at_turn
 
     !> Where a cubic turns in an interval of length 1, by its values and rates at both ends. What
     !> changes all the way as at one end turns at the other: there it has a kink.
-    pure subroutine find_turn(values, rates, s, found)
+    pure subroutine turn_of_cubic(values, rates, s, found)
         real(dp), intent(in) :: values(2), rates(2)
         real(dp), intent(out) :: s
         logical, intent(out) :: found
@@ -443,7 +443,7 @@ contains
             s = -2.0_dp * rates(1) / (c1 + sign(root, c1))
         end if
         s = min(1.0_dp, max(0.0_dp, s))
-    end subroutine find_turn
+    end subroutine turn_of_cubic
 
     !> A moment within a step, whose slip is spread as the block's way is.
     pure function within(self, a, b, time) result(between)

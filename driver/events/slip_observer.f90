@@ -40,11 +40,7 @@ module slip_observer
         logical :: rigid = .false.                     !! there is none, and slip stops at once
         logical :: one_block = .true.
         logical :: jumps = .false.                     !! friction drops as slip begins
-        logical :: springs = .false.                   !! traction is that of the contact spring,
-                                                       !! also under a load that changes at once
         type(facts) :: law
-        real(dp) :: holding = 0.0_dp                   !! stiffness of the spring that holds the
-                                                       !! traction of a contact [F/L^3]
         real(dp), allocatable :: onsets(:)             !! of the events [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
@@ -79,8 +75,6 @@ contains
         self%jumps = run%adaptive .and. .not. (run%newmark .or. run%rigid_contact) .and. &
             run%one_by_itself() .and. self%law%traits%onset /= onset_gradual .and. .not. &
             self%law%damping > 0.0_dp .and. max(run%mass, run%damping) > 0.0_dp
-        self%holding = merge(self%law%alpha_t, run%stiffness / run%area, self%elastic)
-        self%springs = creeps(self%law) .and. self%elastic .and. .not. self%law%damping > 0.0_dp
         ! the friction force has the error of a step, part of what the largest load makes of it
         self%least_load = max(thin, min(0.1_dp, 100.0_dp * run%rtol)) * largest_loads(run%drive)
     end subroutine prepare
@@ -158,8 +152,8 @@ contains
             load = old%normal
             if (self%prescribed) load = self%drive%normal_traction(old%time, i)
             if (load > self%least_load(i)) then
-                if (is_gradual(self%drive, i) .or. self%springs .or. .not. (self%prescribed .and. &
-                    slides)) then
+                if (is_gradual(self%drive, i) .or. keeps_traction(self) .or. .not. &
+                    (self%prescribed .and. slides)) then
                     call self%friction(i)%take(over_load(self, i, mean_of(old), load))
                 else if (self%rigid .and. old%normal > 0.0_dp) then
                     call self%friction(i)%take(over_load(self, i, sliding(self, old, load, way), &
@@ -231,13 +225,13 @@ contains
             self%rigid) return   ! a sudden load: what comes of it at once is not known
         step%load_rate = -self%law%alpha_n * [old%v_n, new%v_n]
         step%law = self%law
-        step%yields = .not. creeps(self%law)
+        step%yields = .not. self%law%traits%stiff
         step%force = self%sense(i) * [old%friction(1), new%friction(1)] / self%area
         if (step%slides .and. drops(self, i, old)) then
             step%slides = .false.
             step%force(2) = self%sense(i) * held(self, old, new) / self%area
         end if
-        if (step%slides .and. creeps(self%law)) step%slides = follows_load(self, step, i, &
+        if (step%slides .and. self%law%traits%stiff) step%slides = follows_load(self, step, i, &
             now%slip - before%slip)
         step%coefficient = [old%statev(1, statev_mu), new%statev(1, statev_mu)]
         step%rate = self%sense(i) * [before%rate, now%rate] / self%area
@@ -246,17 +240,25 @@ contains
         if (self%rigid) then
             if (step%slides) step%force = self%sense(i) * sign(strength_at(self%law, &
                 step%coefficient, step%load), way_of(old, new))
-        else if (creeps(self%law)) then
+        else if (self%law%traits%stiff) then
             where (step%load > 0.0_dp) step%coefficient = max(0.0_dp, abs(step%force) &
                 - self%law%cohesion) / step%load
         end if
-        if (creeps(self%law) .or. .not. self%finder%inertia) step%rate = monotonic(step%rate, &
+        if (self%law%traits%stiff .or. .not. self%finder%inertia) step%rate = monotonic(step%rate, &
             (step%force(2) - step%force(1)) / step%length)
         range = [huge(range), -huge(range)]
         if (self%friction(i)%seen) range = [self%friction(i)%least, self%friction(i)%peak]
         call step%extremes(self%drive, i, self%least_load(i), range)
         call self%friction(i)%widen(range)
     end subroutine find_extremes
+
+    !> Is the traction that of the contact spring, also under a load that changes at once?
+    pure function keeps_traction(self) result(yes)
+        class(slip_watch), intent(in) :: self
+        logical :: yes
+
+        yes = self%law%traits%stiff .and. self%elastic .and. .not. self%law%damping > 0.0_dp
+    end function keeps_traction
 
     !> Does friction that creeps follow the load of a step? Not with less slip than it takes to let
     !> the spring that holds the traction change with the load.
@@ -266,12 +268,13 @@ contains
         integer, intent(in) :: i         !! piece
         real(dp), intent(in) :: slip     !! in the step [L]
         logical :: follows
-        real(dp) :: loads(3)
+        real(dp) :: loads(3), stiffness
 
         loads = [step%load, step%load(2)]
         if (self%prescribed) loads(3) = self%drive%normal_traction(step%start + 0.5_dp &
             * step%length, i)
-        follows = slip * self%holding * maxval(loads) > maxval(abs(step%force)) * (maxval(loads) &
+        stiffness = merge(self%law%alpha_t, self%stiffness / self%area, self%elastic)
+        follows = slip * stiffness * maxval(loads) > maxval(abs(step%force)) * (maxval(loads) &
             - minval(loads))
     end function follows_load
 
@@ -283,14 +286,6 @@ contains
         way = old%v(1) + new%v(1)
         if (.not. abs(way) > 0.0_dp) way = new%x(1) - old%x(1)
     end function way_of
-
-    !> Does slip come gradually under any traction, without a strength?
-    pure function creeps(law) result(yes)
-        type(facts), intent(in) :: law
-        logical :: yes
-
-        yes = law%traits%onset == onset_gradual .and. law%traits%memory == 2
-    end function creeps
 
     !> Rates with which a cubic does not turn between its ends. Those of a block without mass may be
     !> of what it does after the step: its velocity jumps where a phase of the contact ends.

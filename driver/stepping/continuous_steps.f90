@@ -34,6 +34,8 @@ module continuous_steps
     !> Part of it that is lost in round-off, but for the steps that it takes to follow a decay which
     !> has gone on for as long.
     real(dp), parameter :: lost = 256.0_dp * shortest
+    !> Part of it that a step takes which follows what happens at once.
+    real(dp), parameter :: at_once = 1.0e3_dp * shortest
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
 
     type, extends(integrator) :: continuous
@@ -181,7 +183,7 @@ contains
                 if (stopped(self%block, t, lost * t)) then
                     call settle(self%block, t)
                     call know_velocity(self%block)
-                    self%dt = 1.0e3_dp * shortest * t
+                    self%dt = at_once * t
                 else if (.not. can_part(self, t)) then
                     report%status = merge(friction_no_rate, friction_no_convergence, jumps(self, t))
                     return
@@ -273,7 +275,7 @@ contains
         type(slider_equations), intent(in) :: eq
         logical :: yes
 
-        yes = .not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp .or. eq%rigid)
+        yes = eq%springs_alone() .and. .not. eq%rigid
     end function may_jump
 
     !> The velocity of a block that follows the traction: that may be less than round-off of the
@@ -345,10 +347,10 @@ contains
         type(slider_state), intent(inout) :: old
         integer, intent(out) :: piece   !! of the programme
         real(dp) :: pressure, open_below
-        real(dp) :: jumped   !! extension of the drive spring, then what it jumps by [L]
-        logical :: touches
+        real(dp) :: before   !! extension of the drive spring [L]
+        logical :: touches, jumps_along
 
-        jumped = self%block%y(extension)
+        before = self%block%y(extension)
         piece = self%drive%piece(old%time)
         if (piece /= self%block%equations%piece) then
             call self%block%equations%enter(piece)
@@ -377,11 +379,10 @@ contains
         end associate
         call self%take_limit(old%time)
         call settle(self%block, old%time)
-        ! the fall of a block that has jumped is a step of its own, which takes next to no time
-        jumped = self%block%y(extension) - jumped
-        if (may_jump(self%block%equations) .and. abs(jumped) > 0.0_dp) then
-            self%dt = min(self%dt, max(1.0e3_dp * shortest * old%time, self%dt_min))
-        end if
+        jumps_along = may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) &
+            > 0.0_dp
+        ! the fall of the block is a step of its own
+        if (jumps_along) self%dt = min(self%dt, max(at_once * old%time, self%dt_min))
         call self%set_weights(old%time)
         if ((self%reloaded .or. self%block%equations%rigid) .and. &
             self%block%equations%creeps_along()) call self%choose_unknown(old%time)

@@ -410,7 +410,7 @@ contains
             part = 1.0_dp
             call let_slip(block, pressure, before, part, statev, status)
             if (status < 0 .or. statev(statev_slip) < far * before) return
-            if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
+            if (eq%springs_alone()) then
                 part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
                 call let_slip(block, pressure, before, part, statev, status)
                 if (status < 0) return

@@ -71,7 +71,7 @@ module slider_rates
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
             traction, inputs, pull, slip_tendency, creeps_along, follows_traction, sense_of, &
             follows_share, runs_away, damped_contact, balance_at, pressed_to, find_least_share, &
-            share_rate
+            share_rate, springs_alone
     end type slider_equations
 
     !> What a contact does to the block. Those that find it fill in what is not zero.
@@ -206,8 +206,7 @@ contains
             call swinging_contact(self, y, contact, failed)
         else if (self%damper > 0.0_dp .and. self%phase /= phase_open) then
             call damped_contact(self, y, force, v_drive, pressure, pressure_rate, contact, failed)
-        else if (self%rigid .and. self%phase /= phase_open .or. self%by_velocity .and. self%phase &
-            == phase_slide) then
+        else if (self%phase /= phase_open .and. without_spring(self)) then
             if (self%follows_traction()) then
                 call following_contact(self, y, force, pressure, pressure_rate, contact)
                 failed = .false.
@@ -276,7 +275,7 @@ contains
 
         failed = .false.
         if (self%phase /= phase_open) contact%traction = self%alpha * y(elastic)
-        in_series = .not. (self%mass > 0.0_dp .or. self%damping > 0.0_dp)
+        in_series = springs_alone(self)
         load%stiffness = self%alpha
         contact%velocity = y(velocity)
         if (in_series) then
@@ -616,6 +615,22 @@ contains
         yes = dy(slip) > far * moved .and. .not. self%rigid
     end function runs_away
 
+    !> Has the contact no spring, or one that is left out?
+    pure function without_spring(self) result(yes)
+        class(slider_equations), intent(in) :: self
+        logical :: yes
+
+        yes = self%rigid .or. self%by_velocity .and. self%phase == phase_slide
+    end function without_spring
+
+    !> Has the block neither mass nor damper, so that its springs alone tell where it is?
+    pure function springs_alone(self) result(yes)
+        class(slider_equations), intent(in) :: self
+        logical :: yes
+
+        yes = .not. (self%mass > 0.0_dp .or. self%damping > 0.0_dp)
+    end function springs_alone
+
     !> Is it a block with a mass on a contact that creeps? Without a contact spring its velocity and
     !> its traction tell each other, and nearly so beside one if the traction is next to nothing.
     pure function creeps_along(self) result(creeps)
@@ -721,8 +736,8 @@ contains
         tau = 0.0_dp
         if (self%phase == phase_open) return
         tau = self%alpha * y(elastic)
-        if (.not. (self%rigid .or. self%damper > 0.0_dp .or. self%by_velocity .and. self%phase &
-            == phase_slide) .or. self%follows_traction()) return
+        if (.not. (without_spring(self) .or. self%damper > 0.0_dp)) return
+        if (self%follows_traction()) return
         call inputs(self, t, y, v_drive, pressure, pressure_rate)
         if (self%damper > 0.0_dp) then
             call damped_contact(self, y, self%pull(y), v_drive, pressure, pressure_rate, contact, &

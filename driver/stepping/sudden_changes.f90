@@ -170,7 +170,7 @@ contains
         real(dp) :: part   !! of the contact spring's stiffness that both have [-]
 
         part = 1.0_dp
-        if (.not. (eq%rigid .or. eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) then
+        if (eq%springs_alone() .and. .not. eq%rigid) then
             part = eq%stiffness / (eq%stiffness + eq%area * eq%alpha)
         end if
         springs = system
@@ -249,7 +249,7 @@ contains
             y(elastic) = 0.0_dp
             if (touches) y(elastic) = eq%sense_of(y(velocity)) * first_ratio &
                 * eq%full_strength(y, pressure) / eq%alpha
-            if (.not. (eq%mass > 0.0_dp .or. eq%damping > 0.0_dp)) y(extension) = 0.0_dp
+            if (eq%springs_alone()) y(extension) = 0.0_dp
             call hold_velocity(block, pressure)
             block%known = .false.
         end associate
