@@ -223,7 +223,8 @@ contains
         logical, intent(out) :: sound
         logical :: definite
         integer, parameter :: most = 25
-        real(dp), dimension(here%n) :: du, residual, compliance, x
+        real(dp), parameter :: mostly_spring = 0.5_dp
+        real(dp), dimension(here%n) :: du, residual, compliance, x, elastic
         real(dp) :: ratio, lead, tail, misfit, before, round_off
         integer :: iteration
 
@@ -250,7 +251,12 @@ contains
                 least_compliance)
             call solve_minres(here, together, self%tangent(:, 2, 2) / compliance + here%damping &
                 * lead, residual, 1.0e-3_dp, x, definite)
-            du = du + x / compliance
+            call here%surroundings%apply(together, x, elastic)
+            where (compliance > mostly_spring)
+                du = du + x / compliance
+            else where   ! such slip says too little of the spring
+                du = du + (residual + elastic - here%damping * lead * x) / self%tangent(:, 2, 2)
+            end where
         end do
         sound = .not. together%any_of(.not. sound)
         if (.not. sound) return

@@ -603,7 +603,7 @@ class Laws(FaultTest):
         """The cell of above, whose slip rate is closed in its slip: growing while it weakens, falling at mu_k. Ends lie within steps."""
         self.write('z,mu_s,traction\n500,0.59,29.4999e6\n1500,0.9,29.4999e6\n', 'cells.csv')
         damping, own = 30e9 / 6e3, 30e9 / (2 * math.pi * 1e3) * (4 - (2 - 2 / 3))
-        for rtol, off in (('1e-2', 1e-2), ('1e-4', 1e-3)):
+        for rtol, off in (('3e-3', 3e-3), ('1e-4', 1e-3)):
             self.run_fault(self.write(f"""
 &fault geometry = 'antiplane_half', width = 2000, nz = 2, shear_modulus = 30e9, wave_speed = 3000, plate_rate = 1e-9,
        normal_traction = 50e6, initial = 'file', initial_file = 'cells.csv' /
@@ -617,6 +617,19 @@ class Laws(FaultTest):
             self.assertAlmostEqual(float(event['duration']), duration, delta=off * duration, msg=rtol)
             self.assertAlmostEqual(float(event['largest_slip']), slip, delta=off * slip, msg=rtol)
             self.assertAlmostEqual(float(event['potency']), 1e3 * slip, delta=1e3 * off * slip, msg=rtol)
+
+    def test_cells_about_to_slip_do_not_shorten_steps(self):
+        """No event: 371 steps. The balance of cells that stick was not followed beside those that slip, and they slipped and stuck in
+        turns while it was looked for: 26 645 steps, and with `rtol` of 1e-6 no end."""
+        self.write('z,mu_k,traction\n320,0.54,9e6\n1240,0.62,9e6\n', 'cells.csv')
+        for rtol in ('1e-5', '1e-6'):
+            self.run_fault(self.write(f"""
+&fault geometry = 'whole', width = 1500, nz = 5, length = 1100, nx = 3, shear_modulus = 52e9, wave_speed = 3000, plate_rate = 6e-9,
+       normal_traction = 42e6, initial = 'file', initial_file = 'cells.csv' /
+&friction law = 'slip_weakening_healing', mu_s = 0.67, mu_k = '@cells.csv', d_c = 0.066, xi = 1e-7 /
+&time t_end = 8e7, rtol = {rtol} /
+"""), '--quiet')
+            self.assertLess(len(self.rows('case_out/case_global.csv')), 2000, rtol)
 
     def with_law(self, law):
         first, last = SUBLOADING.index('law ='), SUBLOADING.index("'exact_rate'") + len("'exact_rate'")
