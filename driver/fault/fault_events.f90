@@ -52,7 +52,7 @@ contains
         type(step_start), intent(in) :: before
         type(fault_state), intent(in) :: state      !! the end of the step
         logical, intent(out) :: ended
-        real(dp) :: rate, rate_before, crossing
+        real(dp) :: rate, rate_before, crossing, mean(here%n)
 
         rate_before = self%largest_rate
         rate = together%largest(maxval(state%rate))
@@ -75,6 +75,11 @@ contains
         end if
         if (.not. self%on) return
         self%event%peak_rate = max(self%event%peak_rate, rate_before, rate)
+        if (here%plan%explicit) then   ! else rates may jump within the step
+            mean = (state%slip - before%slip) / (state%time - before%time)
+            self%event%peak_rate = max(self%event%peak_rate, &
+                together%largest(maxval(largest_within(before%rate, state%rate, mean))))
+        end if
         where (state%rate > here%plan%seismic_rate) self%took_part = 1.0_dp
     end subroutine see
 
@@ -117,6 +122,18 @@ contains
         if (.not. (part >= 0.0_dp .and. part <= 1.0_dp) .and. abs(a) > 0.0_dp) part = q / a
         part = max(0.0_dp, min(1.0_dp, part))
     end function part_until
+
+    !> The largest rate of that parabola in the step.
+    elemental function largest_within(first, last, mean) result(rate)
+        real(dp), intent(in) :: first, last, mean
+        real(dp) :: rate
+        real(dp) :: a, b
+
+        a = 3.0_dp * (first + last - 2.0_dp * mean)
+        b = 6.0_dp * mean - 4.0_dp * first - 2.0_dp * last
+        rate = max(first, last)
+        if (b > 0.0_dp .and. b < -2.0_dp * a) rate = first - 0.25_dp * b**2 / a
+    end function largest_within
 
     !> Number of the cell, from 1, along strike first; of several the first one.
     function fastest_cell(here, together, state, rate) result(number)

@@ -445,6 +445,15 @@ class Output(FaultTest):
             self.assertLess(abs(loading - sum(others)), allowed * loading)
             self.assertGreater(min(others), 1e-4 * loading if text not in (PLANE, HALF) else 0)
 
+    def test_the_peak_of_an_event_is_found_within_steps(self):
+        """Of steps' ends it was 0.7 % less than with the smaller `rtol`; now 0.03 % more."""
+        peaks = []
+        for rtol in ('3e-4', '1e-6'):
+            self.run_fault(self.write(SMALL.replace('rtol = 1e-4', f'rtol = {rtol}')), '--quiet')
+            event, = self.events('case_out', 'case')
+            peaks.append(float(event['peak_slip_rate']))
+        self.assertAlmostEqual(peaks[0] / peaks[1], 1.0, delta=1e-3)
+
     def test_the_last_row_is_the_last_state_however_a_run_ends(self):
         """Waves so fast that slip takes less than the time's round-off; Ctrl-C, twice."""
         tables = []
