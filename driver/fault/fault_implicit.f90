@@ -183,8 +183,22 @@ contains
         state%rate = self%rate
         state%traction = two%traction
         state%memory = two%statev(:, statev_r)
-        if (here%plan%rate_state) state%memory = log(state%memory)
+        if (here%plan%rate_state) state%memory = logarithms(state%memory)
     end subroutine step
+
+    !> Of whole vectors: what is left over would go to a function that rounds otherwise, and what
+    !> that is follows from the number of processes.
+    pure function logarithms(numbers) result(logs)
+        real(dp), intent(in) :: numbers(:)
+        real(dp) :: logs(size(numbers))
+        integer, parameter :: widest = 8   !! numbers of a vector instruction
+        real(dp) :: filled(size(numbers) + modulo(-size(numbers), widest))
+
+        filled(size(numbers) + 1:) = 1.0_dp
+        filled(:size(numbers)) = numbers
+        filled = log(filled)
+        logs = filled(:size(numbers))
+    end function logarithms
 
     !> Work of a step, from its start and the ends of its halves: what friction dissipates is its
     !> own account, the rest the trapezoidal rule's.
