@@ -2,7 +2,8 @@
 module fault_start
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_problem, only : fault, fault_state
-    use friction_mod, only : friction_facts, friction_law_of, friction_message, friction_update, &
+    use friction_mod, only : friction_bad_state, friction_facts, friction_law_of, &
+        friction_message, friction_update, &
         law_facts, law_state, law_subloading, load_rates, read_surface, sliding_surface, &
         statev_mu, statev_r, statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
     use processes, only : team
@@ -173,7 +174,13 @@ contains
         own_status = status
         status = int(together%lowest(int(min(own_status, 0), int64)))
         if (own_status >= 0) cell = 0
-        call tell_refused_cell(here, together, state, cell, trim(friction_message(status)), problem)
+        if (status == friction_bad_state) then   ! the law's, of a traction beyond its strength
+            call tell_refused_cell(here, together, state, cell, 'friction does not carry so much', &
+                problem)
+        else
+            call tell_refused_cell(here, together, state, cell, trim(friction_message(status)), &
+                problem)
+        end if
         if (len(problem) > 0) return
         here%prestress = state%traction + here%damping * state%rate
     end subroutine start_contacts

@@ -122,6 +122,8 @@ contains
         end do
         if (plan%rate_state) call file%refuse('friction', 'theta_0', &
             'has no effect on a fault, whose states follow from slip rates and tractions')
+        call file%refuse('friction', 'eta_t', &
+            'has no effect on a fault, whose slip is told from what its contact springs do')
         plan%constants%x = x
         plan%constants%z = z
         if (drops) call file%reject('friction', 'law', 'drops as soon as slip is fast: no length ' &

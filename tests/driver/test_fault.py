@@ -728,6 +728,7 @@ class Laws(FaultTest):
         (self.place / 'a.csv').write_text(A.replace('22.5e6', '40e6'))
         told = self.run_fault(self.write(SUBLOADING), expect=1).stderr.replace(' .', ' 0.')
         self.assertIn('at the start, at x = 0.00000, z = 208.333, under a traction of 0.400000E+8', told)
+        self.assertIn('friction does not carry so much', told)
 
 
 class Input(FaultTest):
@@ -776,7 +777,7 @@ class Input(FaultTest):
     def test_keys_without_effect_are_faults(self):
         self.assertIn("belongs to geometry = 'antiplane_half'", self.faults(
             PLANE.replace('fields = 5', 'slip_contours = 3e8, 10')))
-        for key in ('theta_0 = 1', 'mu_ratio = 0.5'):
+        for key in ('theta_0 = 1', 'mu_ratio = 0.5', 'eta_t = 1e6'):
             self.assertIn('has no effect on', self.faults(SMALL.replace('f0 = 0.6', 'f0 = 0.6, ' + key)))
 
     def test_the_initial_file_is_looked_for_whatever_else_is_wrong(self):
