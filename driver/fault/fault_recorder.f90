@@ -7,7 +7,7 @@ module fault_recorder
     use number_text, only : full_row, whole_text
     use processes, only : team
     use result_files, only : of_run, remove_results
-    use text_file, only : output_file
+    use text_file, only : gigabyte, output_file
     implicit none
     private
 
@@ -24,6 +24,7 @@ module fault_recorder
         real(dp) :: next_contour = 0.0_dp        !! time [T]
         type(step_start) :: before               !! the last step's
         logical :: writes = .false.              !! this process does
+        logical :: full = .false.                !! a step has more contours than the files may hold
         logical, private :: draws_contours = .false.
     contains
         procedure :: prepare, create, go_on, begin, see, show_last, flush_all, finish, failed, sizes
@@ -238,6 +239,8 @@ contains
         integer :: k
 
         do while (self%next_contour <= last)
+            self%full = together%any_of(sum(self%sizes()) > gigabyte * here%plan%table_limit)
+            if (self%full) return
             u = (self%next_contour - self%before%time) / (state%time - self%before%time)
             own = self%before%slip_at(self%next_contour, state)
             call together%gather(own, here%part%counts, slip)

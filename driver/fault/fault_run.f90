@@ -21,6 +21,8 @@ module fault_run
     public :: run_fault
 
     integer, parameter :: steps_between_looks = 16   !! at the clock
+    character(len=*), parameter :: tables_are_full = &
+        'the tables are as large as &output table_limit: resume the run with a larger one'
     integer, parameter :: own_numbers = 17           !! of a checkpoint's header
 
     !> All that a run is made of.
@@ -121,6 +123,10 @@ contains
                 end if
                 call live%watch%see(live%here, together, records%before, state, ended)
                 call records%see(live%here, together, state, live%watch, ended)
+                if (records%full) then   ! within the step: the checkpoint is one before it
+                    problem = tables_are_full
+                    exit
+                end if
                 if (plan%fields > 0) then
                     if (mod(state%steps, int(plan%fields, int64)) == 0) call &
                         live%fields%write_record(live%here, together, state)
@@ -154,8 +160,7 @@ contains
         if (len(problem) > 0 .or. .not. stop_now) return
         full = together%any_of(full)
         problem = 'interrupted; stickslip fault with --resume goes on from here'
-        if (full) problem = 'the tables are as large as &output table_limit: resume the run with ' &
-            // 'a larger one'
+        if (full) problem = tables_are_full
     end subroutine look
 
     subroutine leave_checkpoint(live, together, problem)

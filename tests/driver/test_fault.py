@@ -329,6 +329,15 @@ class Restart(FaultTest):
         self.write(SMALL.replace('stations', 'table_limit = 1, stations').replace('checkpoint = 0', 'checkpoint = 5'))
         self.resume('case.nml', 1)
 
+    def test_one_step_does_not_fill_the_disk(self):
+        """An event that never ends, in which a step has thousands of contours: 24 MB in the first one, where 10 are allowed."""
+        text = SMALL.replace('stations', 'seismic_rate = 1e-12, table_limit = 1e-2, stations').replace('3e8, 10', '3e8, 0.1')
+        self.assertIn('as large as &output table_limit', self.run_fault(self.write(text), '--quiet', expect=1).stderr)
+        self.assertLess(sum(path.stat().st_size for path in (self.place / 'case_out').iterdir()), 1.1e7)
+        self.write(text.replace('1e-2', '2e-2'))
+        self.assertIn('as large as', self.run_fault('case.nml', '--quiet', '--resume', expect=1).stderr)
+        self.assertLess(sum(path.stat().st_size for path in (self.place / 'case_out').iterdir()), 2.1e7)
+
     def test_files_that_are_not_those_of_the_checkpoint_are_told_by_name(self):
         name = self.write(PLANE.replace('3e8', '1e13').replace('fields = 5', 'fields = 1'))
         run = subprocess.Popen(self.command(1, name, '--quiet'), cwd=self.place, stderr=subprocess.PIPE, text=True)
