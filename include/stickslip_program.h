@@ -58,7 +58,8 @@ enum stickslip_outcome {
     STICKSLIP_NO_INPUT = -8   /* a pointer argument is NULL, or a size negative */
 };
 
-/* One of the tables of a run: "series", "events", "pieces" (of the programme), "summary" (one row); or of stickslip_stability.
+/* One of the tables of a run: "series", "events", "catalogue" (of a chain: the events of its blocks, docs/chains.md; without rows for
+ * one block), "pieces" (of the programme), "summary" (one row); or of stickslip_stability.
  *   rows      receives the number of rows
  *   columns   receives the number of columns
  *   names     receives the names of the columns with commas between them

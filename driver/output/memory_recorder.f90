@@ -3,8 +3,8 @@ module memory_recorder
     use, intrinsic :: iso_c_binding, only : c_null_char
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use run_observer, only : observer, step_news
-    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
-        series_size
+    use run_rows, only : chain_event_columns, chain_event_row, event_columns, event_row, &
+        row_clock, series_columns, series_row, series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
     implicit none
@@ -24,11 +24,13 @@ module memory_recorder
 
     type, extends(observer) :: memory_watch
         type(memory_table) :: series, events
+        type(memory_table) :: catalogue   !! of a chain's events
         type(row_clock) :: clock
         real(dp) :: area = 1.0_dp   !! contact area of a block [L^2]
         integer :: columns = 0      !! of the time series
     contains
         procedure :: prepare, begin, see, finish
+        procedure, private :: add_chain_events
     end type memory_watch
 
 contains
@@ -42,6 +44,7 @@ contains
         self%columns = series_size(run)
         call self%series%start(series_columns(run))
         call self%events%start(event_columns)
+        call self%catalogue%start(chain_event_columns)
     end subroutine prepare
 
     subroutine begin(self, start, news)
@@ -64,7 +67,19 @@ contains
         do i = 1, size(news%slip_events)
             call self%events%add(event_row(news%slip_events(i), self%area))
         end do
+        call self%add_chain_events(news)
     end subroutine see
+
+    subroutine add_chain_events(self, news)
+        class(memory_watch), intent(inout) :: self
+        type(step_news), intent(in) :: news
+        integer :: i
+
+        do i = 1, size(news%chain_events)
+            call self%catalogue%add(chain_event_row(news%chain_events(i), self%area, &
+                news%cut_short))
+        end do
+    end subroutine add_chain_events
 
     !> However a run ends, its last row is its last state.
     subroutine finish(self, last, news)
@@ -72,6 +87,7 @@ contains
         type(slider_state), intent(in) :: last
         type(step_news), intent(inout) :: news
 
+        call self%add_chain_events(news)
         if (.not. self%clock%shown) call self%series%add(series_row(last, self%columns))
     end subroutine finish
 

@@ -6,8 +6,8 @@ module recorder
     use chain_fields, only : chain_field_file
     use number_text, only : full_row, whole_text
     use run_observer, only : observer, step_news
-    use run_rows, only : event_columns, event_row, row_clock, series_columns, series_row, &
-        series_size
+    use run_rows, only : chain_event_columns, chain_event_row, event_columns, event_row, &
+        row_clock, series_columns, series_row, series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
     use text_file, only : gigabyte, output_file
@@ -17,8 +17,6 @@ module recorder
 
     public :: csv_recorder
 
-    character(len=*), parameter :: chain_events_header = &
-        'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended'
     integer, parameter :: rows_between_flushes = 200
 
     type, extends(observer) :: csv_recorder
@@ -67,7 +65,7 @@ contains
         call self%events%create(self%base // '_events.csv')
         call self%series%write_line(trim(self%columns))
         if (self%n_blocks > 1) then
-            call self%events%write_line(chain_events_header)
+            call self%events%write_line(chain_event_columns)
         else
             call self%events%write_line(event_columns)
         end if
@@ -213,16 +211,14 @@ contains
     subroutine write_chain_events(self, news)
         class(csv_recorder), intent(inout) :: self
         type(step_news), intent(in) :: news
-        integer :: blocks, i
+        real(dp) :: row(8)
+        integer :: i
 
         do i = 1, size(news%chain_events)
-            associate (event => news%chain_events(i))
-                blocks = event%last - event%first + 1
-                call self%events%write_line(full_row([event%onset, event%end - event%onset]) &
-                    // ',' // whole_text(event%first) // ',' // whole_text(blocks) // ',' &
-                    // full_row([event%slip / blocks, self%area * event%slip, &
-                    event%peak_velocity]) // merge(',0', ',1', news%cut_short))
-            end associate
+            row = chain_event_row(news%chain_events(i), self%area, news%cut_short)
+            call self%events%write_line(full_row(row(:2)) // ',' // whole_text(nint(row(3))) &
+                // ',' // whole_text(nint(row(4))) // ',' // full_row(row(5:7)) // ',' &
+                // whole_text(nint(row(8))))
             call self%events%flush_lines()
         end do
     end subroutine write_chain_events

@@ -2,6 +2,7 @@
 module run_rows
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+    use chain_events, only : chain_event
     use friction_mod, only : statev_mu, statev_r, statev_slip, statev_u_n
     use law_facts, only : internal_variable
     use run_observer, only : step_news
@@ -11,10 +12,12 @@ module run_rows
     implicit none
     private
 
-    public :: event_row, row_clock, series_columns, series_row, series_size
+    public :: chain_event_row, event_row, row_clock, series_columns, series_row, series_size
 
     character(len=*), parameter, public :: event_columns = &
         'onset,duration,stress_drop,slip,peak_velocity,recurrence_time'
+    character(len=*), parameter, public :: chain_event_columns = &
+        'onset,duration,first_block,blocks,slip,moment,peak_velocity,ended'
 
     !> Tells when a row of the time series is due.
     type :: row_clock
@@ -90,5 +93,19 @@ contains
             event%peak_velocity, event%recurrence]
         if (event%first) row(6) = ieee_value(row(6), ieee_quiet_nan)
     end function event_row
+
+    !> A row of the catalogue of a chain.
+    pure function chain_event_row(event, area, cut_short) result(row)
+        type(chain_event), intent(in) :: event
+        real(dp), intent(in) :: area         !! contact area of a block [L^2]
+        logical, intent(in) :: cut_short     !! it had not ended when the run did
+        real(dp) :: row(8)
+        integer :: blocks
+
+        blocks = event%last - event%first + 1
+        row = [event%onset, event%end - event%onset, real(event%first, dp), real(blocks, dp), &
+            event%slip / blocks, area * event%slip, event%peak_velocity, &
+            merge(0.0_dp, 1.0_dp, cut_short)]
+    end function chain_event_row
 
 end module run_rows

@@ -314,6 +314,8 @@ contains
             call show(this%found%series, rows, columns, names, values)
         case ('events')
             call show(this%found%events, rows, columns, names, values)
+        case ('catalogue')
+            call show(this%found%catalogue, rows, columns, names, values)
         case ('pieces')
             call show(this%pieces, rows, columns, names, values)
         case ('summary')

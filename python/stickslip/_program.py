@@ -49,7 +49,7 @@ class Output(NamedTuple):
     reports: dict[str, str]    #: 'faults', 'failure', 'warnings'; empty texts where there is none
 
 
-TABLES = ('series', 'events', 'pieces', 'summary')
+TABLES = ('series', 'events', 'catalogue', 'pieces', 'summary')
 REPORTS = ('faults', 'failure', 'warnings')
 
 

@@ -34,7 +34,8 @@ class Run:
     """What a run found: the columns of the program's files (docs/driver.md)."""
 
     table: pandas.DataFrame            #: time series; row 0 is the initial state
-    events: pandas.DataFrame           #: one row a slip event
+    events: pandas.DataFrame           #: one row a slip event; of a chain those of its mean force, which `summary` counts
+    catalogue: pandas.DataFrame        #: of a chain: one row an event of its blocks (docs/chains.md); without rows for one block
     pieces: pandas.DataFrame           #: one row a piece of the programme: what is read off velocity steps and holds
     summary: dict[str, float]          #: counts, means, energies; NaN for means of nothing
     warnings: list[str]
@@ -79,7 +80,8 @@ def run(input: str | pathlib.Path | Mapping[str, Any]) -> Run:
         raise InputError(output.reports['faults'].rstrip())
     frames = {key: pandas.DataFrame(table.values, columns=table.names) for key, table in output.tables.items()}
     told = output.reports['warnings'].splitlines()
-    result = Run(frames['series'], frames['events'], frames['pieces'],
+    catalogue = frames['catalogue'].astype(dict.fromkeys(('first_block', 'blocks', 'ended'), int))
+    result = Run(frames['series'], frames['events'], catalogue, frames['pieces'],
                  {key: float(value[0]) for key, value in frames['summary'].items()}, told)
     for warning in told:
         python_warnings.warn(warning, stacklevel=2)
