@@ -192,13 +192,13 @@ contains
                 trial%separator = separators(i:i)
                 trial%header_line = line
                 call read_titles(text, first, last, requests, trial)
-                rank = count(trial%places > 0)
+                rank = columns_found(trial)
                 if (rank >= min(2, size(requests))) then
                     if (.not. comment) rank = rank + size(requests)
                 else if (comment) then
                     rank = 0
                 end if
-                if (rank <= best) cycle
+                if (rank < best .or. rank == best .and. .not. parts_more(trial, form)) cycle
                 best = rank
                 form = trial
             end do
@@ -221,6 +221,27 @@ contains
             call check_lines_before(text, form, read_in)
         end if
     end subroutine find_header
+
+    !> How many columns have a name that is asked for?
+    pure function columns_found(form) result(n)
+        type(file_form), intent(in) :: form
+        integer :: n
+        integer :: i
+
+        n = count([(form%places(i) > 0 .and. all(form%places(:i - 1) /= form%places(i)), &
+            i = 1, size(form%places))])
+    end function columns_found
+
+    !> Does this separator part a line that another left whole? Behind a comma, a name that is not
+    !> parted may have a unit. Blanks may stand in names.
+    pure function parts_more(trial, form) result(yes)
+        type(file_form), intent(in) :: trial, form
+        logical :: yes
+
+        yes = allocated(form%titles) .and. trial%header_line == form%header_line &
+            .and. trial%separator /= ' '
+        if (yes) yes = size(form%titles) == 1 .and. size(trial%titles) > 1
+    end function parts_more
 
     !> What a line is if it is the line of names.
     pure subroutine read_titles(text, first, last, requests, form)
@@ -309,6 +330,9 @@ contains
                     "column '" // printable(title) // "' is missing: there are " // read_in%titles)
                 cycle
             end if
+            if (any(form%places(:i - 1) == form%places(i))) call read_in%add_fault( &
+                form%header_line, "column '" // printable(form%titles(form%places(i))%text) &
+                // "' is asked for twice")
             name%text = requests(i)%name
             read_in%names = [read_in%names, name]
             places = places_of(requests(i), form%titles, most=2)

@@ -73,14 +73,21 @@ class Fit:
 
     def settings(self, record: int = 0) -> dict[str, dict[str, Any]]:
         """Input of the program that computes a record with the values found, as groups of keys."""
-        target = self._targets[record]
+        target = self._target(record)
         settings = self._problem.settings(self._candidate, target)
         set_times(settings, float(target.analysis.time[-1]), target.analysis.step)
         return settings
 
+    def _target(self, record: int) -> Target:
+        """What a record was compared by."""
+        if not isinstance(record, numbers.Integral) or not 0 <= record < len(self._targets):
+            raise IndexError(f'record = {record!r}: a whole number from 0 to {len(self._targets) - 1} is needed')
+        return self._targets[record]
+
     def write_namelist(self, path: str | pathlib.Path, record: int = 0) -> None:
         """Writes an input that `stickslip run` takes as it stands: the model of one of the records."""
         found = ', '.join(f'{name} {self.values[name]:.5g}' for name in self.values)
+        self._target(record)
         names = [' '.join(target.analysis.record.name.split()) for target in self._targets]   # in one line
         text = (f'! Fitted to {", ".join(names)}: {found}\n'
                 f'! Drive and end are those of {names[record]}.\n\n')

@@ -42,12 +42,12 @@ def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
     A bad state or velocity is a negative status of that point; wrong shapes are a ValueError.
     """
     require_law(law, own=False)
-    velocity = np.ascontiguousarray(numbers(velocity, 'velocity'))
-    state = np.ascontiguousarray(numbers(state, 'state'))
+    velocity, state = numbers(velocity, 'velocity'), numbers(state, 'state')
     if velocity.ndim not in (1, 2) or velocity.shape[-1] not in (2, 3):
         raise ValueError(f'velocity has the shape {velocity.shape}: (ndir,) or (n, ndir) with ndir 2 or 3 is needed')
     if state.shape != (*velocity.shape[:-1], STATE_SIZE):
         raise ValueError(f'state has the shape {state.shape}: {(*velocity.shape[:-1], STATE_SIZE)} is needed')
+    velocity, state = np.ascontiguousarray(velocity), np.ascontiguousarray(state)
     found = np.full(state.shape, np.nan)
     points = velocity.size // velocity.shape[-1]
     status = np.empty(points, np.int32)

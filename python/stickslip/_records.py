@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import pathlib
 from collections.abc import Mapping
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _namelist, _program
-from ._arrays import row_of
+from ._arrays import number, row_of
 from ._optional import needed
 
 
@@ -52,7 +53,14 @@ class Record:
         to the force afterwards [F]; start, end: the part of the record to take, in its own time [T]; the rest as for
         `Record`.
         """
+        if not isinstance(path, (str, os.PathLike)):
+            raise TypeError(f'path = {path!r}: the name of a file is needed')
         path = pathlib.Path(path)
+        for what, column in (('time', time), ('force', force)):
+            if not isinstance(column, str):
+                raise TypeError(f'{path}: {what} = {column!r}: the name of a column is needed')
+        if time == force:
+            raise RecordError(f'{path}: time and force are both {time!r}: two columns are needed')
         _check_numbers(path, time_factor=time_factor, force_factor=force_factor, force_offset=force_offset, start=start, end=end)
         moment, pull = (_numbers(values, f'{path}: {column!r}')
                         for column, values in zip((time, force), _read_columns(path, (time, force))))
@@ -63,6 +71,8 @@ class Record:
                 keep &= ~(moment < start)
             if end is not None:
                 keep &= ~(moment > end)
+            if not keep.any() and moment.size > 0:
+                raise RecordError(f'{path}: no sample lies between start and end: the record goes from {moment[0]:g} to {moment[-1]:g}')
             moment, pull = moment[keep], pull[keep]
         return cls(moment, pull, settings or {}, name or path.stem, from_rest)
 
@@ -102,13 +112,18 @@ def _numbers(values: Any, what: str) -> np.ndarray:
         raise RecordError(str(error)) from None
 
 
-def _check_numbers(path: pathlib.Path, **given: float | None) -> None:
+def _check_numbers(path: pathlib.Path, **given: Any) -> None:
     """Refuses factors, and ends of a part, that make no record."""
     for name, value in given.items():
-        if value is not None and (isinstance(value, str) or not np.isfinite(value)):
+        if value is None and name in ('start', 'end'):
+            continue
+        try:
+            finite = np.isfinite(number(value, name))
+        except (TypeError, ValueError):
+            finite = False
+        if not finite:
             raise RecordError(f'{path}: {name} = {value!r}: must be a finite number')
-    time_factor = given['time_factor']
-    if time_factor is None or not time_factor > 0.0:
+    if not given['time_factor'] > 0.0:
         raise RecordError(f'{path}: time_factor = {given["time_factor"]}: must be > 0')
     if given['force_factor'] == 0.0:
         raise RecordError(f'{path}: force_factor = 0: must not be 0')

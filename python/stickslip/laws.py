@@ -48,6 +48,8 @@ class Law:
         for number, constant in zip(numbers[1:], _library.constants_of(self.number)):
             if constant.words:   # a choice may be given by its number, too: the program takes words alone
                 object.__setattr__(self, constant.name, constant.words[int(number)])
+            elif getattr(self, constant.name) is not None:   # an array, or a number of less digits, is no value of its own
+                object.__setattr__(self, constant.name, number)
 
     def __reduce__(self) -> tuple:
         """How a law is pickled and copied: made anew from its constants, because pointers belong to one process."""

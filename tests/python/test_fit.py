@@ -15,7 +15,7 @@ from unittest import mock
 import numpy as np
 
 import stickslip
-from stickslip import _fit_command, _namelist, _search
+from stickslip import _fit_command, _namelist, _program, _search
 from stickslip._features import make_target
 from stickslip._records import analyse, find_falls
 
@@ -116,6 +116,12 @@ class Fit(unittest.TestCase):
         problem = copy.deepcopy(found)._problem
         coarse, fine = (problem.jacobian(found._candidate, step)[0] for step in (0.01, 0.001))
         self.assertLess((np.linalg.norm(coarse - fine, axis=0) / np.linalg.norm(fine, axis=0)).max(), 0.02)
+
+    def test_a_record_that_is_not_there_is_told(self):
+        for record in (1, -1, 'record'):
+            for give in (self.fit.settings, lambda k: self.fit.write_namelist(os.devnull, k)):
+                with self.assertRaisesRegex(IndexError, f'record = {record!r}: a whole number from 0 to 0'):
+                    give(record)
 
     def test_several_records_are_fitted_together_and_drawn(self):
         slow = synthetic(seed=2, drive={'velocity': 0.6}, time={'t_end': 25.0, 'rtol': 1e-8})
@@ -598,10 +604,33 @@ class Records(unittest.TestCase):
                 path.write_text('\n'.join([*lines, *plain[1:]]), encoding='utf-8')
                 with self.assertRaisesRegex(stickslip.RecordError, words):
                     stickslip.Record.read(path)
+            path.write_text('\n'.join(['time,spring_force', *plain]))
             for settings, words in (({'time_factor': 0}, 'time_factor = 0: must be > 0'), ({'start': np.nan}, 'start = nan'),
-                                    ({'start': 5, 'end': 4}, 'start must be below end'), ({'force_factor': 'x'}, "= 'x'")):
+                                    ({'start': 5, 'end': 4}, 'start must be below end'), ({'force_factor': 'x'}, "= 'x'"),
+                                    ({'force_offset': None}, 'force_offset = None: must be a finite number'),
+                                    ({'force_offset': np.zeros(2)}, 'force_offset = array.*: must be a finite number'),
+                                    ({'start': np.datetime64('2020-01-01')}, 'start = .*: must be a finite number'),
+                                    ({'force': 'time'}, "time and force are both 'time'"),
+                                    ({'start': 99.0}, 'no sample lies between start and end: the record goes from 0 to 17')):
                 with self.assertRaisesRegex(stickslip.RecordError, words):
                     stickslip.Record.read(path, **settings)
+            for settings, words in (({'time': 0}, 'time = 0: the name of a column'), ({'force': None}, 'force = None: the name of a column')):
+                with self.assertRaisesRegex(TypeError, words):
+                    stickslip.Record.read(path, **settings)
+        with self.assertRaisesRegex(TypeError, 'path = None: the name of a file'):
+            stickslip.Record.read(None)
+
+    def test_a_column_alone_and_one_that_is_asked_for_twice(self):
+        """What stands behind a comma may be a unit only where the line is not parted there: 0,1 was read as 0.1."""
+        for content, names, values, fault in ((b'time,x\n0,1\n1,5\n', ['time'], [[0, 1]], ''), (b'time [s],x\n0,1\n1,5\n', ['time'], [[0, 1]], ''),
+                                              (b'time, s\n0\n1\n', ['time'], [[0, 1]], ''), (b'time; s\n0,5\n1\n', ['time'], [[0.5, 1]], ''),
+                                              (b'x [N] time\n0 1\n2 3\n', ['time'], None, 'as many cells'),
+                                              (b'time,x\n0,1\n1,5\n', ['time', 'time'], None, "line 1: column 'time' is asked for twice"),
+                                              (b'Time;x\n0;1\n1;5\n', ['time', 'x', 'Time'], None, "line 1: column 'Time' is asked for twice")):
+            found, faults = _program.columns(content, names)
+            self.assertRegex(faults, fault) if fault else self.assertEqual(faults, '')
+            if values is not None:
+                np.testing.assert_array_equal(found, values)
 
     def test_dates_and_masked_samples_are_no_numbers(self):
         t, force = self.time, self.force

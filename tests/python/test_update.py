@@ -329,8 +329,9 @@ class Rates(unittest.TestCase):
         self.assertEqual((found.status < 0).tolist(), [False, False, False, True, False])
         self.assertTrue(np.isnan(found.rates[3]).all())
         np.testing.assert_array_equal(found.rates[4], stickslip.rates(velocity[4], law, state[4]).rates)
-        for velocity, state in (([0.0], np.zeros(8)), ([0.0, 1.0], np.zeros(7)), (np.zeros((3, 2)), np.zeros((2, 8)))):
-            with self.assertRaises(ValueError):
+        for velocity, state, shape in (([0.0], np.zeros(8), r'\(1,\)'), ([0.0, 1.0], np.zeros(7), r'\(7,\)'),
+                                       (np.zeros((3, 2)), np.zeros((2, 8)), r'\(2, 8\)'), (1.0, np.zeros(8), r'\(\)')):
+            with self.assertRaisesRegex(ValueError, f'has the shape {shape}: '):
                 stickslip.rates(velocity, law, state)
 
 
@@ -415,6 +416,11 @@ class Laws(unittest.TestCase):
         with self.assertRaises(ValueError):
             law.props[3] = 3
         self.assertEqual(hash(law), hash(dataclasses.replace(law)))
+        given = np.array(0.3)
+        law = dataclasses.replace(LAWS['coulomb'], mu=given)   # keeps no array that the caller may change
+        given[...] = 0.9
+        self.assertEqual((law.mu, hash(law)), (0.3, hash(dataclasses.replace(law, mu=0.3))))
+        self.assertNotEqual(dataclasses.replace(law, mu=np.float32(0.3)), law)   # which is 0.30000001
 
     def test_laws_are_pickled_and_copied(self):
         """Processes and caches do that; a pointer of another process would be rubbish."""
