@@ -13,6 +13,8 @@ def numbers(values: Any, what: str) -> np.ndarray:
         values = np.ma.filled(values.astype(values.dtype if values.dtype.kind == 'c' else float), np.nan)
     try:
         array = np.asarray(values)
+        if array.dtype.kind == 'O' and any(isinstance(item, (list, tuple, np.ndarray)) for item in array.flat):
+            raise ValueError('some are lists')   # as numpy says from 1.24 on
     except ValueError as error:   # of lists whose lengths differ
         raise ValueError(f'{what}: numbers in rows of one length are needed ({error})') from None
     if array.dtype.kind == 'c':

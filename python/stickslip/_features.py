@@ -145,7 +145,7 @@ def make_target(analysis: Analysis, rig: float = RIG) -> Target:
     near = min(0.2 * analysis.period, 3.0 * float(np.median(falls.end - falls.onset)))
     if analysis.scattered:
         values, each = medians(analysis.time, analysis.force, falls)
-        errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
+        errors = errors_of_medians(each, 200)
         unknown = np.where(np.array(MEDIANS) == 'slope', rig * np.abs(values), 0.0)
         return Target(analysis, SKIPPED + SETTLED, MEDIANS, values, np.hypot(errors, unknown), np.abs(values), 0.0, near, rig,
                       np.empty(0))
@@ -186,6 +186,12 @@ def median_of_blocks(each: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     starts = rng.integers(0, n, size=-(-n // block))
     chosen = (starts[:, None] + np.arange(block)).ravel()[:n] % n
     return np.median(each[chosen], axis=0)
+
+
+def errors_of_medians(each: np.ndarray, number: int) -> np.ndarray:
+    """Standard deviations of the medians over so many draws. numpy's generators spawn others from 1.25 on, their seeds before."""
+    seeds = np.random.SeedSequence(0).spawn(number)
+    return np.std([median_of_blocks(each, np.random.default_rng(seed)) for seed in seeds], axis=0)
 
 
 def _errors(target: Target, events: int, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:

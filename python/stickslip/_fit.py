@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _namelist
-from ._features import FLOOR, MEDIANS, RIG, Target, make_target, median_of_blocks, medians, rises
+from ._features import FLOOR, MEDIANS, RIG, Target, errors_of_medians, make_target, medians, rises
 from ._namelist import InputError
 from ._records import LEAST_EVENTS, Analysis, Record, analyse, means_between
 from ._run import check_runs, spring_force
@@ -129,7 +129,7 @@ def compare(problem: Problem, candidate: np.ndarray, analysis: Analysis) -> dict
     """Medians over the events of a record against those of the model."""
     late = analysis.falls.part(slice(1 if analysis.from_rest else 0, None))
     measured, each = medians(analysis.time, analysis.force, late)
-    errors = np.std([median_of_blocks(each, rng) for rng in np.random.default_rng(0).spawn(200)], axis=0)
+    errors = errors_of_medians(each, 200)
     settled = dataclasses.replace(analysis, scattered=True)
     target = dataclasses.replace(make_target(settled), analysis=settled)
     computed = problem.features(candidate, target)
@@ -496,7 +496,7 @@ def _rig_remarks(target: Target, slider: dict, drive: dict) -> list[str]:
     if each.size < LEAST_EVENTS - 1:
         return []
     slope = float(np.median(each))
-    error = np.std([median_of_blocks(each[:, None], rng) for rng in np.random.default_rng(0).spawn(50)])
+    error = float(errors_of_medians(each[:, None], 50)[0])
     # Noise of a straight line through the middle half of a rise, and of the median of such slopes: few events may scatter
     # less by chance.
     half = 0.5 * float(np.median(analysis.falls.onset[1:] - analysis.falls.end[:-1]))

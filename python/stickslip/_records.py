@@ -146,7 +146,7 @@ def _matlab_columns(path: pathlib.Path, names: tuple[str, ...]) -> list[np.ndarr
     io = needed('scipy.io', 'fit')
     try:
         table = io.loadmat(path, appendmat=False)
-    except (io.matlab.MatReadError, NotImplementedError, ValueError, TypeError) as error:
+    except (io.matlab.MatReadError, NotImplementedError, ValueError, TypeError, IndexError) as error:
         raise RecordError(f'{path}: not a MATLAB file that can be read ({error})') from None
     for name in names:
         if name not in table:
