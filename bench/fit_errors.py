@@ -74,6 +74,8 @@ def record(kind, draw):
         time += number
     elif name == 'short':
         time = np.arange(0.0, number, STEP)
+    elif name == 'coarse':
+        time = np.arange(number * draw.uniform(), END, number)
     elif name == 'uneven':
         time = np.sort(draw.uniform(0.0, END, time.size))
     top = force.max()
@@ -94,7 +96,7 @@ def record(kind, draw):
 
 
 KINDS = ('even', 'late@0.02', 'late@0.15', 'late@0.5', 'late@1.5', 'inside@6', 'idle@0.05', 'idle@0.2', 'soft late@0.1', 'soft idle@0.1',
-         'kinetic late@0.2', 'uneven', 'lasting@0.9', 'flicker', 'steps@8', 'steps@12', 'cell@0.15', 'short@15.5', 'drift@0.03',
+         'kinetic late@0.2', 'uneven', 'coarse@0.1', 'coarse@0.3', 'lasting@0.9', 'flicker', 'steps@8', 'steps@12', 'cell@0.15', 'short@15.5', 'drift@0.03',
          'measured@0.03', 'loaded@0.05', 'struck@10', 'zero@0.02', 'stiffness')
 
 

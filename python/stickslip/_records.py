@@ -253,7 +253,18 @@ class Analysis:
     @property
     def row_step(self) -> float:
         """Time between rows of a simulation that is to be sampled like the record [T]."""
-        return self.step / self.averaged / (FINER if self.uneven else 1)
+        return self.step / self.averaged / (FINER if self.uneven or self.sparse else 1)
+
+    @property
+    def sparse(self) -> bool:
+        """Has a fall so few samples that it counts where in the fall they are?"""
+        return bool(np.median(self.falls.end - self.falls.onset) < FEW_SAMPLES * self.step_in_falls)
+
+    @property
+    def step_in_falls(self) -> float:
+        """Time between the record's own samples where the force falls, median [T]."""
+        own = self.record.time - self.record.time[0]
+        return float(np.median(np.diff(own)[np.searchsorted(own[1:-1], self.falls.middle)]))
 
     @property
     def uneven(self) -> bool:
@@ -296,6 +307,7 @@ class Analysis:
 
 LEAST_EVENTS = 5
 FINER = 4               # rows of a simulation in a step of a record whose samples lie between rows
+FEW_SAMPLES = 8         # of a fall
 SAMPLES_A_PERIOD = 200
 SAMPLES_A_FALL = 30
 

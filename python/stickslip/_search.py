@@ -333,11 +333,17 @@ def replicas(problem: Problem, candidate: np.ndarray, number: int) -> np.ndarray
 
 def _with_noise(target: Target, time: np.ndarray, force: np.ndarray, rng: np.random.Generator,
                 number: int) -> np.ndarray | None:
-    time, force = target.analysis.like(time, force)
-    clean = target.of_samples(time, force)
+    """Deviations of the features by noise, and by where in the falls samples are, if these are few; None where there are too few
+    events."""
+    analysis = target.analysis
+    clean = target.of_simulation(time, force)
     if clean is None:
         return None
-    found = [target.of_samples(time, noisy) for noisy in target.with_noise(time, force, rng, number)]
+    late = rng.uniform(0.0, analysis.step_in_falls, number) if analysis.sparse else np.zeros(1)
+    found = []
+    for begin in late:
+        moment, sampled = analysis.like(time - begin, force)
+        found += [target.of_samples(moment, noisy) for noisy in target.with_noise(moment, sampled, rng, number // late.size)]
     return np.array([clean if features is None else features for features in found]) - clean
 
 

@@ -249,6 +249,20 @@ class Fit(unittest.TestCase):
         self.assertLess(np.sqrt(np.mean(np.square(whole))), 1.6)
         self.assertGreater(np.sqrt(np.mean(np.square(whole))), 0.45)
 
+    def test_errors_of_a_record_with_few_samples_a_fall_are_larger(self):
+        """Falls that take half of the time between samples are known in time to a part of that only, and their peaks are cut off: without this
+        the errors of these records were 2.6 and 4.3 standard deviations in the mean. Six records leave one in a thousand above the bound."""
+        fine, clean = synthetic(noise=0.0, output={'every': 0.001})
+        off = []
+        for seed in range(6):
+            draw = np.random.default_rng(500 + seed)
+            t = np.arange(0.3 * draw.uniform(), 17.0, 0.3)
+            force = np.interp(t, fine, clean) + 0.01 * clean.max() * draw.normal(size=t.size)
+            found = stickslip.fit(stickslip.Record(t, force), INPUT, **SETTINGS)
+            off += [np.log(found.values[name] / true) / np.log(np.divide(*found.intervals[name][::-1])) * 2 * 1.96
+                    for name, true in TRUE.items()]
+        self.assertLess(np.sqrt(np.mean(np.square(off))), 1.9)
+
     def test_noise_that_lasts_has_its_part_in_mean_cycles(self):
         """Pieces of it must not cancel out over the cycles, as the whole does."""
         white = np.random.default_rng(4).normal(size=self.time.size + 500)
