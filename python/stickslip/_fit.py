@@ -391,7 +391,7 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
             ringing = 2.0 * np.pi * np.sqrt(slider['mass'] / slider['stiffness'])
             if target.analysis.period < RINGING_TIMES * ringing:
                 remarks.append(f'{name}: the period {target.analysis.period:.3g} is less than {RINGING_TIMES:g} ringing times '
-                               f'({ringing:.3g}): small changes of the constants can move the slider to another cycle')
+                               f'(of {ringing:.3g} each): small changes of the constants can move the slider to another cycle')
         if target.analysis.scattered:
             remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
             drive = problem.settings(candidate, target).get('drive', {})
