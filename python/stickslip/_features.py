@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ._records import Analysis, Falls, average, find_falls, means_between, smooth, straight_trend
+from ._records import Analysis, Falls, average, find_falls, means_between, smooth, straight_trend, unsettled_events
 
 MOST_EVENTS = 30        # of a record that are followed one by one
 SKIPPED = 5             # events of a simulation before it has settled
@@ -165,6 +165,8 @@ def _wander(analysis: Analysis) -> np.ndarray:
     """What the force differs by from the mean cycle, sample after sample, if that is more than white noise makes, which is
     all that neighbouring samples show: noise of a filter or of a surface, by which whole cycles differ."""
     time, force, middle = analysis.time, analysis.force, analysis.falls.middle
+    if analysis.from_rest:   # the first events may differ, and the model's do so, too
+        middle = middle[unsettled_events(time, analysis.falls, analysis.noise):]
     places = np.arange(0, len(middle) - 1)[:, None] + BETWEEN
     cycles = np.interp(np.interp(places, np.arange(len(middle)), middle), time, force)
     mean = cycles.mean(axis=0)

@@ -329,7 +329,7 @@ def analyse(record: Record, sense: float = 1.0, settled: bool = False) -> Analys
     warnings += _check_shape(record, falls)
     from_rest, of_start = _begins_at_rest(record, time, smooth(force, window), falls)
     warnings += of_start
-    if not (from_rest or settled) and (early := _unsettled(time, falls, noise)):
+    if not (from_rest or settled) and (early := unsettled_events(time, falls, noise)):
         told = (f'{record.name}: the first {f"{early} events differ" if early > 1 else "event differs"} from the later ones: the slider '
                 'had not settled, or the surface was changing, when the record began')
         if len(falls) - early >= LEAST_EVENTS:
@@ -496,7 +496,7 @@ def _begins_at_rest(record: Record, time: np.ndarray, force: np.ndarray, falls: 
 PEAK_NOISE = 0.5       # of the noise of a sample: what peaks vary by at least, each the largest of a few samples
 
 
-def _unsettled(time: np.ndarray, falls: Falls, noise: float) -> int:
+def unsettled_events(time: np.ndarray, falls: Falls, noise: float) -> int:
     """How many events at the start differ from what the later half, with its drift, says they would be, where those after them do
     not. Where many do, the level wanders, and where the events scatter, nothing can be said."""
     if _scatters(falls):
