@@ -178,6 +178,8 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
     if not (checkpoint is None or isinstance(checkpoint, (str, os.PathLike))):
         raise TypeError(f'fit: checkpoint = {checkpoint!r}: the name of a file is needed')
     base = _namelist.groups_of(input)
+    if 'fit' in base:
+        raise InputError('fit: input: has a group &fit, which is for the command stickslip-fit: give an input without')
     constants = [_constant(name, base, bounds) for name in free]
     if not constants:
         raise InputError('fit: no free constants')

@@ -351,6 +351,10 @@ class Fit(unittest.TestCase):
             self.assertRegex(result.stderr, '^stickslip-fit: rig.nml: .*No space left')
             self.assertTrue((folder / 'rig_fit' / 'rig.txt').read_text().startswith('mu_s'))
 
+    def test_an_input_of_the_command_is_refused_before_the_search(self):
+        with self.assertRaisesRegex(stickslip.InputError, 'input: has a group &fit, which is for the command'):
+            stickslip.fit(self.record, {**INPUT, 'fit': {'free': 'mu_s'}}, **SETTINGS)
+
     def test_a_namelist_that_the_program_refuses_is_refused(self):
         for text, words in (('&friction mu_s=.4 mu_s=.5 /\n', 'input:1: &friction mu_s.*given twice'),
                             ('&drive\n velocity(2)=1 /', 'input:2: &drive velocity = 1: has gaps'),
