@@ -737,15 +737,17 @@ contains
     end subroutine pass
 
     !> Changes the method after fifteen steps of the explicit one that stability held far shorter
-    !> than the error would, or three calm ones of the implicit one.
+    !> than the error would (or shorter at all, where there is no swing to lose), or three calm ones
+    !> of the implicit one.
     subroutine choose_method(self, tried, stable)
         class(continuous), intent(inout) :: self
         type(trial), intent(in) :: tried
         real(dp), intent(in) :: stable   !! length of the longest step that is [T]
         integer, parameter :: most_stiff = 15, most_calm = 6, few_calm = 3
-        real(dp), parameter :: far = 4.0_dp
+        real(dp) :: far
 
         if (self%block%equations%surface%traits%stiff) return
+        far = merge(1.0_dp, 4.0_dp, self%ringing%decays)
         if (self%implicit) then
             self%calm = merge(self%calm + 1, 0, self%dt / tried%h * tried%stiffness < 3.0_dp)
             if (self%calm < few_calm) return

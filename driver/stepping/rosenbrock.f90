@@ -272,7 +272,7 @@ contains
     end subroutine solve_all
 
     !> Derivatives of the rates by the unknowns that act on them, and by time, by differences: taken
-    !> in the sense of the loading, so that a mirrored motion has the mirrored steps.
+    !> in the sense in which the block moves, so that none turns it back, which unloads the contact.
     pure subroutine differentiate(n, equations, t, h, y, first, natural, j, by_time, failed)
         integer, intent(in) :: n
         type(slider_equations), intent(in) :: equations
@@ -281,15 +281,18 @@ contains
         real(dp), intent(out) :: by_time(unknowns)
         logical, intent(out) :: failed
         real(dp), parameter :: little = 1.0e-8_dp
-        integer, parameter :: mirrored(3) = [extension, velocity, elastic]
-        real(dp) :: w(unknowns), dy(unknowns), steps(controlled), step
+        real(dp) :: w(unknowns), dy(unknowns), steps(controlled), step, v_drive, pressure, &
+            pressure_rate, sense
         integer :: i
 
         steps(:n) = little * max(abs(y(:n)), natural)
         ! it may be far smaller than 1, and its rate changes with its logarithm
         if (equations%least_share > 0.0_dp) steps(ratio) = little * max(abs(y(ratio)), &
             equations%least_share)
-        steps(mirrored) = equations%forward * steps(mirrored)
+        call equations%inputs(t, y, v_drive, pressure, pressure_rate)
+        sense = equations%sense_of(v_drive - first(extension))
+        steps(extension:velocity) = sense * steps(extension:velocity)
+        steps(elastic) = merge(equations%forward, -sense, equations%mass > 0.0_dp) * steps(elastic)
         do i = 1, n
             w = y
             w(i) = y(i) + steps(i)

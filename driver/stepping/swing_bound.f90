@@ -12,6 +12,7 @@ module swing_bound
     type :: oscillation
         real(dp) :: radian = huge(1.0_dp)   !! time of one; huge where it does not swing [T]
         real(dp) :: phase = 0.0_dp          !! what damping allows an explicit step [rad]
+        logical :: decays = .false.         !! within a swing or two
     contains
         procedure :: longest_step
     end type oscillation
@@ -34,7 +35,8 @@ contains
         ratio = 0.5_dp * damping / sqrt(stiffness * mass)
         swings%radian = sqrt(mass / stiffness)
         swings%phase = (min(ratio, most_damped) / one_radian)**(1.0_dp / 7.0_dp)
-        if (ratio > most_damped) swings%phase = decaying
+        swings%decays = ratio > most_damped
+        if (swings%decays) swings%phase = decaying
         if (ratio > 1.0_dp) swings%radian = swings%radian / (ratio + sqrt(ratio**2 - 1.0_dp))
     end function oscillation_of
 

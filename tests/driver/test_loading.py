@@ -635,6 +635,18 @@ class ContinuousTime(Columns):
                         self.assertAlmostEqual(run['displacement'][-1], v * end - carried / 100, delta=1e-5)
                         self.assertAlmostEqual(run['velocity'][-1] / v, 1, delta=1e-3)
 
+    def test_explicit_steps_do_not_follow_a_slow_drive_through_what_decays(self):
+        # as long as they may be, they kept a block on a damper of the contact between rest and slip, without an end
+        v, end = 1e-8, 6e7
+        for damping in (0.2, 10):
+            for friction, carried in (("law='coulomb', mu=0.3", 3), ("law='slip_weakening', mu_s=0.3, mu_k=0.2, d_c=0.5", 2)):
+                with self.subTest(damping=damping, friction=friction):
+                    run = self.run_columns(self.QUIET.format(friction=f'{friction}, eta_t=1e6', damping=damping, v=v, end=end)
+                                           .replace('mass=1,', 'mass=2e-3,').replace('alpha_t=1e4', 'alpha_t=1e3'))
+                    self.assertLess(len(run['time']), 200)
+                    self.assertAlmostEqual(run['friction_force'][-1], carried, delta=1e-5)
+                    self.assertAlmostEqual(run['displacement'][-1], v * end - (carried + damping * v) / 100, delta=1e-5)
+
     def test_a_block_that_loads_slowly_and_slips_a_little_comes_to_rest(self):
         # each swing lets a subloading surface slip: one that the steps keep up would let the traction fall
         text = self.QUIET.format(friction="law='subloading', mu_s=0.3, mu_k=0.2, kappa=300, xi=1e-6, m=3000", damping=0.05, v=1e-8,
