@@ -22,7 +22,7 @@ module block_motion
         real(dp) :: first(unknowns) = 0.0_dp    !! rates there
         logical :: known = .false.              !! they are up to date
     contains
-        procedure :: synchronise
+        procedure :: synchronise, find_balance
     end type moving_block
 
 contains
@@ -64,10 +64,14 @@ contains
             natural = 1.0_dp
             natural(extension) = force / stiffness
             if (run%mass > 0.0_dp) then
-                natural(velocity) = force / sqrt(stiffness * run%mass)
+                natural(velocity) = force / max(sqrt(stiffness * run%mass), run%damping)
                 told = epsilon(1.0_dp) * force / max(sqrt(stiffness * run%mass), run%damping)
                 eq%falling = max(falls_by(eq%surface, largest), margin * told / run%rtol)
                 natural(velocity) = min(natural(velocity), inverse_step * sqrt(eq%falling * told))
+            end if
+            if (eq%damping > 0.0_dp .and. .not. eq%mass > 0.0_dp) then   ! what slow drives ask for
+                natural(velocity) = maxval(abs(run%drive%velocity))
+                if (.not. natural(velocity) > 0.0_dp) natural(velocity) = force / eq%damping
             end if
             natural(elastic) = force / (run%area * eq%alpha)
             if (eq%surface%traits%weight * largest > 0.0_dp) natural(memory) = force &
@@ -116,6 +120,29 @@ contains
         self%y(damped) = state%damped
         self%known = .false.
     end subroutine synchronise
+
+    !> The balance of a block without mass whose velocity is an unknown. Forces that have changed at
+    !> once change the velocity; where a phase has ended within the tolerated error, its drive
+    !> spring gives way.
+    pure subroutine find_balance(self, tolerated)
+        class(moving_block), intent(inout) :: self
+        real(dp), intent(in) :: tolerated   !! error of its contact spring [L]
+        real(dp), parameter :: round_off = 64.0_dp * epsilon(1.0_dp)
+        real(dp) :: open, friction   !! [F]
+
+        associate (eq => self%equations, y => self%y)
+            if (.not. eq%keeps_velocity()) return
+            friction = eq%area * eq%alpha * y(elastic)
+            open = eq%stiffness * y(extension) - friction - eq%damping * y(velocity)
+            if (abs(open) <= round_off * abs(friction)) return
+            self%known = .false.
+            if (abs(open) <= eq%area * eq%alpha * tolerated) then
+                y(extension) = (friction + eq%damping * y(velocity)) / eq%stiffness
+            else
+                y(velocity) = y(velocity) + open / eq%damping
+            end if
+        end associate
+    end subroutine find_balance
 
     !> The unknowns of a block as a state has them, but for what is known of all blocks together.
     pure function unknowns_of(equations, state, i) result(y)
@@ -169,8 +196,9 @@ contains
         new%spring(i) = eq%pull(y)
         pressure = merge(0.0_dp, max(normal, eq%least_pressure), eq%phase == phase_open)
         state = eq%law_state_of(y, pressure)
+        state%r = max(state%r, 0.0_dp)   ! slip that has healed, but for its tolerated error
         new%v(i) = y(velocity)
-        new%a(i) = dy(velocity)
+        new%a(i) = merge(dy(velocity), 0.0_dp, eq%mass > 0.0_dp)
         traction = eq%traction(t, y)
         call let_go(eq, y, pressure, traction, new%a(i))
         new%friction(i) = eq%area * traction

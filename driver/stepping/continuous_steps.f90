@@ -204,6 +204,7 @@ contains
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
             if (tried%switch > 0 .and. .not. waits(eq, tried%switch)) call change_phase(block, &
                 end, tried%switch)
+            call block%find_balance(self%rtol * self%natural(elastic))
         end associate
     end subroutine go_on
 
@@ -379,6 +380,8 @@ contains
         end associate
         call self%take_limit(old%time)
         call settle(self%block, old%time)
+        call self%block%find_balance(self%rtol * self%natural(elastic))
+        if (.not. self%block%known) call settle(self%block, old%time)
         jumps_along = may_jump(self%block%equations) .and. abs(self%block%y(extension) - before) &
             > 0.0_dp
         ! the fall of the block is a step of its own

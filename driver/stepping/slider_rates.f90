@@ -15,7 +15,7 @@ module slider_rates
     !> follow from them.
     integer, parameter, public :: unknowns = 11, controlled = 7, along = 5
     integer, parameter, public :: extension = 1    !! of the drive spring [L]
-    integer, parameter, public :: velocity = 2     !! of the block; not without mass [L/T]
+    integer, parameter, public :: velocity = 2     !! of the block; without mass seldom [L/T]
     integer, parameter, public :: elastic = 3      !! elastic displacement of the contact [L]
     integer, parameter, public :: memory = 4       !! of the law: mu, D, or ln(theta)
     integer, parameter, public :: ratio = 5        !! R while a shear cap holds the traction, or
@@ -71,7 +71,7 @@ module slider_rates
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
             traction, inputs, pull, slip_tendency, creeps_along, follows_traction, sense_of, &
             follows_share, runs_away, damped_contact, balance_at, pressed_to, find_least_share, &
-            share_rate, springs_alone
+            share_rate, springs_alone, keeps_velocity
     end type slider_equations
 
     !> What a contact does to the block. Those that find it fill in what is not zero.
@@ -230,6 +230,9 @@ contains
         if (self%mass > 0.0_dp .and. .not. (self%rigid .and. self%phase == phase_stick)) then
             dy(velocity) = (force - self%damping * contact%velocity - self%area &
                 * contact%traction) / self%mass
+        else if (self%keeps_velocity()) then
+            dy(velocity) = (self%stiffness * dy(extension) - self%area * self%alpha &
+                * contact%elastic) / self%damping
         end if
         dy(elastic) = contact%elastic
         dy(memory) = contact%memory
@@ -281,7 +284,7 @@ contains
         if (in_series) then
             contact%velocity = v_drive
             load%stiffness = self%alpha * self%stiffness / (self%stiffness + self%area * self%alpha)
-        else if (.not. self%mass > 0.0_dp) then
+        else if (.not. (self%mass > 0.0_dp .or. self%keeps_velocity())) then
             contact%velocity = (self%stiffness * y(extension) - self%area * contact%traction) &
                 / self%damping
         end if
@@ -630,6 +633,18 @@ contains
 
         yes = .not. (self%mass > 0.0_dp .or. self%damping > 0.0_dp)
     end function springs_alone
+
+    !> Is the velocity of a block without mass an unknown? It is a small difference of forces: under
+    !> a slow drive their tolerated errors would turn it back and forth, and a subloading surface
+    !> slips each time that it is loaded.
+    pure function keeps_velocity(self) result(keeps)
+        class(slider_equations), intent(in) :: self
+        logical :: keeps
+
+        keeps = self%damping > 0.0_dp .and. self%phase /= phase_open .and. .not. (self%mass &
+            > 0.0_dp .or. self%damper > 0.0_dp .or. self%rigid .or. self%across%free() &
+            .or. self%surface%traits%stiff .or. self%surface%traits%onset == onset_drops)
+    end function keeps_velocity
 
     !> Is it a block with a mass on a contact that creeps? Without a contact spring its velocity and
     !> its traction tell each other, and nearly so beside one if the traction is next to nothing.

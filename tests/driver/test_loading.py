@@ -635,6 +635,32 @@ class ContinuousTime(Columns):
                         self.assertAlmostEqual(run['displacement'][-1], v * end - carried / 100, delta=1e-5)
                         self.assertAlmostEqual(run['velocity'][-1] / v, 1, delta=1e-3)
 
+    def test_a_slow_drive_loads_a_block_without_mass(self):
+        # its velocity is a small difference of forces, whose tolerated errors turned it back and forth: a subloading surface slipped
+        # each time, and a slow drive gave no traction at all. Under mu alone V t = S alpha u/K + u + s(R), s = -li(R)/m
+        def slip(r):
+            log = math.log(r)
+            term, total = 1.0, 0.5772156649015329 + math.log(-log)
+            for k in range(1, 60):
+                term *= log / k
+                total += term / k
+            return -total / 1000
+        for v in (1e-3, 1e-5, 1e-8):
+            for sign in (1, -1):
+                run = self.run_columns(f"""&friction law='subloading', alpha_n=450, alpha_t=450, mu_s=0.3, mu_k=0.3, kappa=1, xi=0, m=1000 /
+                    &slider mass=0, stiffness=2, damping=2e-3, normal_traction=1.5 /
+                    &drive velocity={sign * v} /
+                    &time t_end={0.4 / v}, rtol=1e-5 /""")
+                with self.subTest(v=v, sign=sign):
+                    self.assertLess(len(run['time']), 500)
+                    self.assertAlmostEqual(abs(run['friction_force'][-1]), 0.45, delta=1e-5)
+                    for drive, force, r in zip(run['drive'], run['friction_force'], run['R']):
+                        if r < 0.01 or r > 1 - 1e-4:   # the damper's start; the logarithm's end
+                            continue
+                        elastic = 0.45 * r / 450
+                        self.assertAlmostEqual(abs(force), 0.45 * r, delta=1e-12)
+                        self.assertAlmostEqual(abs(drive), 0.45 * r / 2 + elastic + slip(r), delta=1e-5)
+
     def test_explicit_steps_do_not_follow_a_slow_drive_through_what_decays(self):
         # as long as they may be, they kept a block on a damper of the contact between rest and slip, without an end
         v, end = 1e-8, 6e7
