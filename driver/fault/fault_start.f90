@@ -3,9 +3,9 @@ module fault_start
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use fault_problem, only : fault, fault_state
     use friction_mod, only : friction_bad_state, friction_facts, friction_law_of, &
-        friction_message, friction_update, &
-        law_facts, law_state, law_subloading, load_rates, read_surface, sliding_surface, &
-        statev_mu, statev_r, statev_size, statev_slip, statev_status, statev_u_et, statev_u_n
+        friction_message, friction_update, law_facts, law_state, law_subloading, load_rates, &
+        read_surface, sliding_surface, statev_mu, statev_r, statev_size, statev_slip, &
+        statev_status, statev_u_et, statev_u_n
     use processes, only : team
     implicit none
     private
@@ -137,6 +137,7 @@ contains
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
         real(dp) :: given(1), contact(statev_size)
         integer :: i, k, cell, status, own_status
+        character(len=:), allocatable :: why
 
         problem = ''
         status = 0
@@ -174,13 +175,10 @@ contains
         own_status = status
         status = int(together%lowest(int(min(own_status, 0), int64)))
         if (own_status >= 0) cell = 0
-        if (status == friction_bad_state) then   ! the law's, of a traction beyond its strength
-            call tell_refused_cell(here, together, state, cell, 'friction does not carry so much', &
-                problem)
-        else
-            call tell_refused_cell(here, together, state, cell, trim(friction_message(status)), &
-                problem)
-        end if
+        why = trim(friction_message(status))
+        ! the law's, of a traction beyond its strength
+        if (status == friction_bad_state) why = 'friction does not carry so much'
+        call tell_refused_cell(here, together, state, cell, why, problem)
         if (len(problem) > 0) return
         here%prestress = state%traction + here%damping * state%rate
     end subroutine start_contacts

@@ -68,8 +68,7 @@ contains
                 told = epsilon(1.0_dp) * force / max(sqrt(stiffness * run%mass), run%damping)
                 eq%falling = max(falls_by(eq%surface, largest), margin * told / run%rtol)
                 natural(velocity) = min(natural(velocity), inverse_step * sqrt(eq%falling * told))
-            end if
-            if (eq%damping > 0.0_dp .and. .not. eq%mass > 0.0_dp) then   ! what slow drives ask for
+            else if (run%damping > 0.0_dp) then   ! what slow drives ask for
                 natural(velocity) = maxval(abs(run%drive%velocity))
                 if (.not. natural(velocity) > 0.0_dp) natural(velocity) = force / eq%damping
             end if

@@ -230,7 +230,7 @@ contains
         if (self%mass > 0.0_dp .and. .not. (self%rigid .and. self%phase == phase_stick)) then
             dy(velocity) = (force - self%damping * contact%velocity - self%area &
                 * contact%traction) / self%mass
-        else if (self%keeps_velocity()) then
+        else if (keeps_velocity(self)) then
             dy(velocity) = (self%stiffness * dy(extension) - self%area * self%alpha &
                 * contact%elastic) / self%damping
         end if
@@ -284,7 +284,7 @@ contains
         if (in_series) then
             contact%velocity = v_drive
             load%stiffness = self%alpha * self%stiffness / (self%stiffness + self%area * self%alpha)
-        else if (.not. (self%mass > 0.0_dp .or. self%keeps_velocity())) then
+        else if (.not. (self%mass > 0.0_dp .or. keeps_velocity(self))) then
             contact%velocity = (self%stiffness * y(extension) - self%area * contact%traction) &
                 / self%damping
         end if

@@ -62,8 +62,6 @@ contains
         tried%y(slip) = tried%y(slip) + (abs(tried%y(elastic)) - most)
         tried%y(dissipated) = tried%y(dissipated) + 0.5_dp * eq%alpha * (tried%y(elastic)**2 &
             - most**2)
-        if (eq%keeps_velocity()) tried%y(extension) = tried%y(extension) + eq%area * eq%alpha &
-            / eq%stiffness * (sign(most, tried%y(elastic)) - tried%y(elastic))
         tried%y(elastic) = sign(most, tried%y(elastic))
     end subroutine limit_share
 
