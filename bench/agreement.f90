@@ -3,6 +3,7 @@ module agreement
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use contact_sets, only : contact_set, props
     use friction_mod, only : friction_update, statev_mu, statev_r, statev_slip, statev_u_et
+    use worst_errors, only : worse, worst_of
     implicit none
     private
 
@@ -79,12 +80,12 @@ contains
         trial = norm2(before(statev_u_et:statev_u_et + 1)) + path
         scale = [1.0_dp, pressure / props(2), reach, reach, one%statev(statev_mu), &
             one%statev(statev_r), trial, props(4) * pressure * trial]
-        apart%traction = worse(apart%traction, maxval_of(abs(other%traction - one%traction)) &
+        apart%traction = worse(apart%traction, worst_of(abs(other%traction - one%traction)) &
             / pressure)
-        apart%state = worse(apart%state, maxval_of(abs(other%statev - one%statev) / scale))
+        apart%state = worse(apart%state, worst_of(abs(other%statev - one%statev) / scale))
         apart%slip = worse(apart%slip, abs(other%statev(statev_slip) - one%statev(statev_slip)) &
             / path)
-        apart%tangent = worse(apart%tangent, maxval_of([abs(other%tangent - one%tangent)]) &
+        apart%tangent = worse(apart%tangent, worst_of(abs(other%tangent - one%tangent)) &
             / props(3))
     end subroutine compare_point
 
@@ -97,27 +98,5 @@ contains
             worse(a%tangent, b%tangent), worse(a%slip, b%slip), a%failures + b%failures, &
             a%backward + b%backward)
     end function merge_deviations
-
-    pure function maxval_of(x) result(worst)
-        real(dp), intent(in) :: x(:)
-        real(dp) :: worst
-        integer :: i
-
-        worst = 0.0_dp
-        do i = 1, size(x)
-            worst = worse(worst, x(i))
-        end do
-    end function maxval_of
-
-    !> The larger of two; NaN, which `max` may pass over, is worse than any number.
-    elemental function worse(a, b) result(worst)
-        real(dp), intent(in) :: a
-        real(dp), intent(in) :: b
-        real(dp) :: worst
-
-        worst = huge(worst)
-        if (a <= b) worst = b
-        if (b < a) worst = a
-    end function worse
 
 end module agreement

@@ -57,7 +57,7 @@ contains
                 ' rows have a median beyond 1.25 times the ' // 'lowest: the machine was not idle'
             call costs%say(trim(line))
         end if
-        right = max(batch%traction, batch%state) <= traction_bar &
+        right = batch%traction <= traction_bar .and. batch%state <= traction_bar &
             .and. batch%tangent <= tangent_bar .and. scalar%failures + batch%failures &
             + scalar%backward + batch%backward == 0
 

@@ -10,6 +10,7 @@ program slider_bench
     use run_settings, only : settings
     use simulation, only : simulate, simulation_run, start_run
     use stopwatch, only : timer
+    use worst_errors, only : worst_of
     !$ use omp_lib, only : omp_get_num_procs, omp_set_num_threads
     implicit none
 
@@ -305,7 +306,7 @@ contains
         real(dp) :: error                   !! [T]
 
         error = huge(error)
-        if (size(onsets) == size(truth%onsets)) error = maxval(abs(onsets - truth%onsets))
+        if (size(onsets) == size(truth%onsets)) error = worst_of(abs(onsets - truth%onsets))
     end function event_error
 
     !> Fixed steps: first event, before which nothing rings, and third event, with the ringing

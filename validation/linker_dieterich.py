@@ -68,11 +68,11 @@ differential equations by scipy's Radau at a tolerance of 1e-10.""")
         rows, _ = program.run(**groups, time={'t_end': T_END, 'rtol': 1e-8})
         expected = reference(evolution, rows['time'])
         report.row(f'Linker-Dieterich, {name} law: friction under an oscillating pressure, rtol = 1e-8 [MPa]', 'Radau: 0', 0.0,
-                   max(abs(rows['friction_force'] - expected)), 1e-5, absolute=True)
+                   numpy.max(abs(rows['friction_force'] - expected)), 1e-5, absolute=True)
         errors = []
         for dt in (4e-3, 2e-3):
             fixed, _ = program.run(**groups, time={'t_end': T_END, 'dt': dt})
-            errors.append(max(abs(fixed['friction_force'] - reference(evolution, fixed['time']))))
+            errors.append(numpy.max(abs(fixed['friction_force'] - reference(evolution, fixed['time']))))
         report.row(f'Linker-Dieterich, {name} law: the same, error at dt = 4 ms over that at 2 ms', 'first order: 2', 2.0,
                    errors[0] / errors[1], 5e-2)
         axes[evolution].plot(rows['time'], expected / (NORMAL + CHANGE * numpy.sin(2 * numpy.pi * rows['time'] / PERIOD)), 'k-',

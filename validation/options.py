@@ -82,7 +82,7 @@ def stuck(program, report):
     for dt in (2e-5, 1e-5):
         rows, _ = program.run(**groups, time={'t_end': 0.05, 'dt': dt})
         high, t = peaks(rows), rows['time']
-        errors.append(max(abs(rows['displacement'] - motion(t))))
+        errors.append(numpy.max(abs(rows['displacement'] - motion(t))))
     report.row('damper: logarithmic decrement of a block that sticks, dt = 1e-5', '`2 pi z/sqrt(1 - z^2)`, `z = eta_t S/(2 sqrt(k M))`', decrement,
                numpy.log(high[0] / high[4]) / 4, 1e-2)
     report.row('damper: displacement of the block, error at dt = 2e-5 over that at half of it', 'first order: 2', 2.0, errors[0] / errors[1], 5e-2)
@@ -127,7 +127,7 @@ def ringing(program, report):
     t = rows['time']
     expected = solution.sol(t)
     report.row('damper: velocity after the jump of static-kinetic friction, rtol = 1e-9, largest difference [mm/s]', 'Radau: 0', 0.0,
-               max(abs(rows['velocity'] - expected[1])), 1e-3, absolute=True)
+               numpy.max(abs(rows['velocity'] - expected[1])), 1e-3, absolute=True)
     figure, axes = plot.subplots(figsize=(9, 4))
     axes.plot(t, expected[1], 'k-', linewidth=3, alpha=0.4, label='Radau, 1e-9')
     axes.plot(t, rows['velocity'], 'C1-', linewidth=1, label='stickslip')

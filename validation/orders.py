@@ -43,7 +43,7 @@ def peak(rows):
     s = numpy.linspace(0.0, 1.0, 20001)
     values = (force[k] * (1 + 2 * s) * (1 - s)**2 + h * slope[k] * s * (1 - s)**2
               + force[k + 1] * s**2 * (3 - 2 * s) - h * slope[k + 1] * s**2 * (1 - s))
-    return max(values)
+    return values.max()
 
 
 def errors(program, scheme, steps, expected):

@@ -26,7 +26,7 @@ class Report:
 
     def curve(self, claim, source, expected, computed, allowed):
         """Two curves: what they start and end with, and their largest distance."""
-        error = max(abs(a - b) for a, b in zip(expected, computed))
+        error = max((abs(a - b) for a, b in zip(expected, computed)), key=lambda error: (math.isnan(error), error))
         self.judge(claim, source, f'{number(expected[0])} to {number(expected[-1])}',
                    f'{number(computed[0])} to {number(computed[-1])}', error, allowed, True)
 

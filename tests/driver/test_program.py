@@ -10,10 +10,14 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
-from drawing import needs_gnuplot
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))   # here, for those that take from this file
+
+from drawing import needs_gnuplot  # noqa: E402
+from worst_errors import worst_of  # noqa: E402
 
 PROGRAM = os.environ['STICKSLIP']
 FAULT_ENGINE = pathlib.Path(PROGRAM).with_name('stickslip-fault').exists()
@@ -325,7 +329,7 @@ class Laws(Program):
         self.refused(law_namelist('coulomb', tau_max='-1'), '&friction tau_max = -1: must be >= 0')
         for law in LAWS:
             rows, _ = self.slide(law, tau_max='1.5')
-            self.assertAlmostEqual(max(row['friction_force'] for row in rows), 1.5, delta=1e-12)
+            self.assertAlmostEqual(worst_of(row['friction_force'] for row in rows), 1.5, delta=1e-12)
 
     def test_orthotropic_friction_is_not_for_blocks(self):
         for law in LAWS:
@@ -623,7 +627,7 @@ class FailedRun(Program):
         self.assertTrue({tuple(row.values()) for row in few} <= every)
         times = [float(row['time']) for row in few]
         self.assertEqual(times, sorted(times))
-        self.assertLess(max(b - a for a, b in zip(times, times[1:])), 31.7 / 3000)
+        self.assertLess(worst_of(b - a for a, b in zip(times, times[1:])), 31.7 / 3000)
         for name in ('spring_force', 'velocity'):
             place = list(few[0]).index(name)
             values = [float(row[place]) for row in every]
@@ -670,7 +674,7 @@ class ShippedInputs(Program):
         self.assertGreater(len(events), 15)
         periods = [event['recurrence_time'] for event in events]
         self.assertTrue(math.isnan(periods[0]))
-        self.assertLess(max(periods[1:]) - min(periods[1:]), 0.01 * periods[1])
+        self.assertLess(worst_of(periods[1:]) - min(periods[1:]), 0.01 * periods[1])
         for event in events:   # drops are sudden: short against the stick before them
             self.assertLess(event['duration'], 0.1 * periods[1])
             self.assertGreater(event['stress_drop'], 0.5 * 0.4 * 0.01)

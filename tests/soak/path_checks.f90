@@ -6,6 +6,7 @@ module path_checks
         load_case, material, mean_decay, pulled, read_increment, read_material, resistance_of, &
         rested_state, rested_strength
     use quad_friction_mod, only : quad_update => friction_update
+    use worst_errors, only : worse, worst_of
     implicit none
     private
 
@@ -100,11 +101,8 @@ contains
         call friction_update(zero, t%dt, t%props, state, traction, tangent, status)
         kind_ = k_hold
         if (status /= 0 .or. nint(state(1)) /= 1) return
-        if (any(abs(state(2:4) - t%new(2:4)) > 1.0e-280_dp)) then
-            return
-        end if
-        if (abs(tangent(2, 2) - t%props(3)) > 0.0_dp .or. abs(tangent(2, 1)) > 0.0_dp) return
-        kind_ = 0
+        if (all(abs(state(2:4) - t%new(2:4)) <= 1.0e-280_dp) .and. abs(tangent(2, 2) - t%props(3)) &
+            <= 0.0_dp .and. abs(tangent(2, 1)) <= 0.0_dp) kind_ = 0
     end function check_hold
 
     !> The discrete equations, in extended precision, of what was returned.
@@ -180,7 +178,8 @@ contains
         type(load_case), intent(in) :: this
         real(qp), intent(in) :: tau(2), slid(2), equivalent, trial
         real(dp), intent(inout) :: residual
-        real(qp) :: along(2), s, error, worst, work, gained, blur(2), misfit(2), scale(2), normal(2)
+        real(dp) :: worst
+        real(qp) :: along(2), s, error, work, gained, blur(2), misfit(2), scale(2), normal(2)
 
         kind_ = 0
         error = 8.0_qp * eps * this%q_scale
@@ -217,10 +216,9 @@ contains
             misfit = 0.0_qp
         end if
         if (.not. carries(t, mat, this, equivalent, trial, residual)) return
-        worst = maxval(abs(misfit) / (scale + blur / eps))
-        residual = max(residual, real(worst, dp))
-        if (worst > 128.0_qp * eps) return
-        kind_ = 0
+        worst = worst_of(real(abs(misfit) / (scale + blur / eps), dp))
+        residual = worse(residual, worst)
+        if (worst <= 128.0_dp * epsilon(worst)) kind_ = 0
 
     contains
 
@@ -291,7 +289,7 @@ contains
                 .and. own >= mat%tau_max * (1.0_qp - 1.0e3_qp * eps)
         else
             worst = abs(equivalent - own) / (trial + own)
-            residual = max(residual, real(worst, dp))
+            residual = worse(residual, real(worst, dp))
             carries = worst <= 64.0_qp * eps
         end if
     end function carries
@@ -472,10 +470,10 @@ contains
         end do
         skipped = .false.
         stiff = max(t%props(2), t%props(3))
-        worst = real(maxval(abs(t%tangent - by_du)), dp) / max(stiff, &
-            real(maxval(abs(by_du)), dp)**2 / stiff)
-        error = max(error, worst)
-        if (worst > 1.0e-12_dp) kind_ = k_tangent
+        worst = worst_of(real(abs(t%tangent - by_du), dp)) / max(stiff, real(maxval(abs(by_du)), &
+            dp)**2 / stiff)
+        error = worse(error, worst)
+        if (.not. worst <= 1.0e-12_dp) kind_ = k_tangent
     end function check_tangent
 
 end module path_checks

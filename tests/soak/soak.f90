@@ -17,6 +17,7 @@ program soak
         check_hold, expects_time, k_batch, k_batch_status, k_code, k_convergence, k_entry, &
         k_hold, k_refused, kinds, n_kinds, tally, trial_of, viscous_of
     use path_draws, only : draw_increment, draw_props, draw_state, draw_time, path, points
+    use worst_errors, only : worse, worst_of
     implicit none
 
     integer, parameter :: steps = 8   !! increments of a path
@@ -224,9 +225,9 @@ contains
             if (nint(statev(i, 1)) /= nint(one(i)%new(1))) call note(k_batch_status, one(i))
             value = distance(one(i), statev(i, :), traction(i, :))
             by_du = tangent_distance(one(i), tangent(i, :, :))
-            sum_%batch_value = max(sum_%batch_value, value)
-            sum_%batch_tangent = max(sum_%batch_tangent, by_du)
-            if (value > 1.0e-13_dp .or. by_du > 1.0e-12_dp) call note(k_batch, one(i))
+            sum_%batch_value = worse(sum_%batch_value, value)
+            sum_%batch_tangent = worse(sum_%batch_tangent, by_du)
+            if (.not. (value <= 1.0e-13_dp .and. by_du <= 1.0e-12_dp)) call note(k_batch, one(i))
         end do
     end subroutine compare_batch
 
@@ -242,9 +243,9 @@ contains
         length = max(displaced(t), tiny(length))
         ! Round-off of the displacements changes the traction by the tangent.
         force = max(norm2(t%traction), maxval(abs(t%tangent(2:m, 2:m))) * length, tiny(force))
-        apart = maxval(abs(traction - t%traction(:m))) / force
-        apart = max(apart, maxval(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)), force &
-            / (t%props(3) + viscous_of(t)))))
+        apart = worst_of(abs(traction - t%traction(:m))) / force
+        apart = worse(apart, worst_of(abs(state(2:4) - t%new(2:4)) / max(length, abs(t%new(2)), &
+            force / (t%props(3) + viscous_of(t)))))
         condition = 1.0_dp
         ! The coefficient of rate-and-state friction is exp(u), where u is the sum of large terms.
         if (creeps(nint(t%props(1)))) condition = 1.0_dp + (t%props(8) + t%props(5) &
@@ -260,15 +261,15 @@ contains
         ! that carries nearly all of the traction nothing else tells the slip.
         if (nint(t%props(1)) == 1 .and. slip > 0.0_dp) condition = 1.0_dp + abs(t%new(5) &
             - t%old(5)) / inner(1) * (length / slip) / 300.0_dp
-        apart = max(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
+        apart = worse(apart, abs(state(5) - t%new(5)) / inner(1) / condition)
         if (nint(t%props(1)) == 1) condition = 1.0_dp
         if (creeps(nint(t%props(1)))) condition = condition + blur_of_state(t, length) / 300.0_dp
         ! With flash heating ln(theta) tends to (psi_ss - f0)/b.
         if (nint(t%props(1)) == 7) condition = condition + t%props(8) / t%props(5) / 30.0_dp
-        apart = max(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
-        apart = max(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
+        apart = worse(apart, abs(state(6) - t%new(6)) / inner(2) / condition)
+        apart = worse(apart, abs(state(7) - t%new(7)) / (length + t%new(7)))
         damper = viscous_of(t) * (norm2(t%new(3:4) - t%old(3:4)) + epsilon(damper) * length)
-        apart = max(apart, abs(state(8) - t%new(8)) / max((force + damper) * length + t%new(8), &
+        apart = worse(apart, abs(state(8) - t%new(8)) / max((force + damper) * length + t%new(8), &
             1.0e-300_dp))
     end function distance
 
@@ -308,7 +309,7 @@ contains
         m = size(tangent, 1)
         stick = max(t%props(2), t%props(3) + viscous_of(t))
         largest_ = max(stick, maxval(abs(tangent)))
-        apart = maxval(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
+        apart = worst_of(abs(tangent - t%tangent(:m, :m))) / (largest_ * (largest_ / stick))
         ! It depends on the slip, a difference of displacements, which round.
         slip = t%new(7) - t%old(7)
         if (slip > 0.0_dp) apart = apart / (1.0_dp + 1.0e12_dp * epsilon(slip) * displaced(t) &
@@ -347,7 +348,7 @@ contains
             return
         end if
         if (nint(state(1)) == 2 .and. t%status == 0 .and. status == 0) then
-            if (norm2(matmul(q, t%traction) - traction) > 100.0_dp * scale * max(1.0_dp, &
+            if (.not. norm2(matmul(q, t%traction) - traction) <= 100.0_dp * scale * max(1.0_dp, &
                 maxval(abs(t%tangent)) / maxval(t%props(2:3)))) call note(k_entry, t)
         end if
         slid = nint(state(1)) == 2 .and. .not. creeps(nint(t%props(1))) &

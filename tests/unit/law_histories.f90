@@ -8,6 +8,7 @@ module law_histories
     use draws, only : draw, seed_draws
     use friction_mod, only : friction_tangential, friction_update
     use law_suite, only : law_case, law_point, laws, random_law_point
+    use worst_errors, only : worse, worst_of
     implicit none
     private
 
@@ -81,7 +82,7 @@ contains
         type(law_history), intent(inout) :: seen
         type(law_history), intent(in) :: h
 
-        seen%worst = max(seen%worst, h%worst)
+        seen%worst = worse(seen%worst, h%worst)
         seen%phases = seen%phases + h%phases
     end subroutine take_in
 
@@ -209,10 +210,10 @@ contains
             - expected%start(6)) / slip
         allowed(7) = allowed(7) + excess * moved
         allowed(8) = allowed(8) + steep * moved**2
-        off = [maxval(abs(expected%traction - found%traction)) / (steep * moved), &
-            maxval(abs(expected%tangent - found%tangent)) / (excess * steep), &
-            maxval(abs(expected%statev - found%statev) / allowed)]
-        h%worst = max(h%worst, maxval(off) / round_off)
+        off = [worst_of(abs(expected%traction - found%traction)) / (steep * moved), &
+            worst_of(abs(expected%tangent - found%tangent)) / (excess * steep), &
+            worst_of(abs(expected%statev - found%statev) / allowed)]
+        h%worst = worse(h%worst, worst_of(off) / round_off)
         if (expected%status /= found%status) h%worst = huge(1.0_dp)
         if (nint(expected%statev(1)) /= nint(found%statev(1))) h%worst = huge(1.0_dp)
         if (expected%status < 0) h%worst = huge(1.0_dp)
@@ -224,7 +225,7 @@ contains
         type(law_history), intent(inout) :: h
         real(dp), intent(in) :: expected, found, scale
 
-        h%worst = max(h%worst, abs(expected - found) / (round_off * max(scale, tiny(1.0_dp))))
+        h%worst = worse(h%worst, abs(expected - found) / (round_off * max(scale, tiny(1.0_dp))))
     end subroutine hold
 
     !> Elastic energy of the contact's springs per area (docs/theory.md, section 5).
