@@ -7,8 +7,9 @@ module continuous_chain
     use abstract_integrator, only : step_report
     use archive_file, only : archive
     use block_motion, only : fill_block, set_growing_weights, set_up, unknowns_of
+    use block_steps, only : implicit_rates
     use chain_rates, only : chain_equations
-    use continuous_steps, only : continuous, implicit_rates
+    use continuous_steps, only : continuous
     use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings

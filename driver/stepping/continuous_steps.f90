@@ -5,65 +5,49 @@
 !> Steps end where a phase of the contact ends, found by taking them again until they do.
 module continuous_steps
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use abstract_integrator, only : integrator, step_report, unstable_without_inertia
+    use abstract_integrator, only : step_report, unstable_without_inertia
     use archive_file, only : archive
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up
-    use explicit_pairs, only : dormand_prince, explicit_pair, explicit_step, tsitouras
+    use block_steps, only : block_integrator, is_short, shortest
+    use explicit_pairs, only : dormand_prince, tsitouras
     use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        law_state, load_rates, onset_gradual, prop_alpha_n, statev_u_n
-    use free_swing, only : swing
-    use phase_changes, only : change_phase, first_root, follow_velocity, lifts, phase_at_rest, &
-        root_bracket, settle, switch_values, switches
-    use rosenbrock, only : growth_rate, rosenbrock_step
+        law_state, load_rates, prop_alpha_n, statev_u_n
+    use phase_changes, only : change_phase, follow_velocity, lifts, phase_at_rest, settle
     use run_settings, only : settings
-    use slider_rates, only : away, controlled, damped, drive_work, elastic, extension, memory, &
-        phase_open, phase_slide, phase_stick, place, slip, slider_equations, unknowns, velocity
+    use slider_rates, only : away, damped, drive_work, elastic, extension, memory, phase_open, &
+        phase_slide, phase_stick, place, slip, slider_equations, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
     use swing_bound, only : oscillation, oscillation_of
-    use trial_step, only : look_at, most_open, trial
+    use trial_step, only : most_open, trial
     implicit none
     private
 
     public :: continuous
 
-    integer, parameter, public :: implicit_rates = 11   !! evaluations of a block's in a step
-    !> Part of the time that no step is shorter than.
-    real(dp), parameter :: shortest = 4.0_dp * epsilon(1.0_dp)
-    !> Part of it that is lost in round-off, but for the steps that it takes to follow a decay which
-    !> has gone on for as long.
+    !> Part of the time that is lost in round-off, but for the steps that it takes to follow a decay
+    !> which has gone on for as long.
     real(dp), parameter :: lost = 256.0_dp * shortest
     !> Part of it that a step takes which follows what happens at once.
     real(dp), parameter :: at_once = 1.0e3_dp * shortest
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
 
-    type, extends(integrator) :: continuous
-        type(moving_block) :: block
+    type, extends(block_integrator) :: continuous
         real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
         real(dp) :: rtol = 0.0_dp
-        real(dp) :: natural(controlled) = 0.0_dp    !! sizes of the unknowns
-        real(dp) :: weights(controlled) = 0.0_dp    !! inverse of the errors tolerated in a step
-        type(explicit_pair) :: pair = dormand_prince   !! the explicit method
-        logical :: implicit = .false.           !! steps by Rodas4
         integer :: stiff = 0, calm = 0          !! steps in favour of the other method
-        logical :: jumped = .false.             !! slip had no rate in the last attempt
         real(dp) :: passed = 0.0_dp             !! since the time of the step's start, in parts [T]
         type(oscillation) :: ringing            !! of a contact that sticks
         type(oscillation) :: swinging           !! on the drive spring alone
         type(oscillation) :: lifting            !! of the motion across the interface
         real(dp) :: largest = 0.0_dp            !! normal traction [F/L^2]
-        real(dp) :: pressed = 1.0_dp            !! that of the step's start, part of it; but 1 where
-                                                !! slip rates do not go through decades
         logical :: reloaded = .false.           !! it is not always the same
-        type(swing) :: free                     !! of a block whose contact rests
-        logical :: swings = .false.             !! the step is of that, in closed form
         logical :: heals = .false.              !! at rest the law forgets how far it has slipped
     contains
         procedure :: prepare, step, visit, why_stopped
         procedure, non_overridable :: take_limit, can_shorten, lengthen
-        procedure, private :: begin, go_on, attempt, swing_on, locate, choose_method, set_weights, &
-            choose_unknown, fill
+        procedure, private :: begin, go_on, choose_method, set_weights, choose_unknown, fill
     end type continuous
 
 contains
@@ -230,14 +214,6 @@ contains
         if (is_short(t, h) .and. .not. end < t + (self%passed + wanted)) h = wanted
     end subroutine plan
 
-    !> Is a step not much longer than what its time can tell?
-    pure function is_short(t, h) result(yes)
-        real(dp), intent(in) :: t, h   !! [T]
-        logical :: yes
-
-        yes = h < 4.0_dp * shortest * t
-    end function is_short
-
     !> The time at the end of a step that was planned, which may have ended earlier.
     subroutine pass_time(self, t, tried, end)
         class(continuous), intent(inout) :: self
@@ -299,19 +275,9 @@ contains
         yes = .false.
         associate (eq => self%block%equations)
             if (.not. eq%rests .or. eq%phase /= phase_stick) return
-            yes = free_amplitude(self) * self%weights(elastic) > unseen
+            yes = self%free_amplitude() * self%weights(elastic) > unseen
         end associate
     end function swings_freely
-
-    !> How far the block would swing on both springs if its contact rested [L].
-    pure function free_amplitude(self) result(size)
-        class(continuous), intent(in) :: self
-        real(dp) :: size
-
-        associate (y => self%block%y)
-            size = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension))
-        end associate
-    end function free_amplitude
 
     !> Length of the longest step that is stable [T]: of an explicit one that which amplifies no
     !> swing, on the springs that the block has at its slip rate. In closed form a quarter of one.
@@ -444,147 +410,6 @@ contains
         power = merge(-1.0_dp / 4.0_dp, -1.0_dp / 5.0_dp, self%implicit)
     end function power_of
 
-    !> Takes a step by the method in use.
-    subroutine attempt(self, t, tried)
-        class(continuous), intent(inout) :: self
-        real(dp), intent(in) :: t             !! [T]
-        type(trial), intent(inout) :: tried   !! its length is given
-        real(dp) :: scales(controlled, 2), growth
-        integer, parameter :: explicit_rates = 6   !! evaluations of them in a step
-        real(dp), parameter :: refused = 1.0e4_dp  !! error of a step that is to be far shorter
-
-        tried%switch = 0
-        tried%error = huge(tried%error)
-        self%jumped = .not. self%block%known
-        if (.not. self%block%known) return
-        if (self%swings) then
-            call self%swing_on(t, tried)
-            return
-        end if
-        if (self%implicit) then
-            scales(:, 1) = self%weights
-            scales(:, 2) = self%natural
-            scales(elastic, 2) = self%natural(elastic) * self%pressed
-            associate (block => self%block)
-                call rosenbrock_step(block%equations, t, tried%h, block%y, block%first, scales, &
-                    tried%y, tried%error, growth)
-                tried%stiffness = tried%h * growth
-                if (tried%error <= 1.0_dp) call look_at(block, t, self%weights, tried)
-                if (tried%error <= 1.0_dp .and. tried%stiffness > 5.0_dp .and. may_grow( &
-                    block%equations)) tried%error = max(tried%error, (tried%h * growth_rate( &
-                    block%equations, t + tried%h, tried%y, tried%last, self%natural))**4)
-            end associate
-        else
-            call explicit_step(self%pair, self%block%equations, t, tried%h, self%block%y, &
-                self%block%first, self%weights, tried%y, tried%last, tried%error, tried%stiffness)
-            ! near the bound of stability errors oscillate as large as they may be, and add up
-            tried%error = tried%error * max(1.0_dp, tried%stiffness)
-        end if
-        call self%count_iterations(merge(implicit_rates, explicit_rates, self%implicit))
-        self%jumped = .not. tried%error < huge(tried%error)
-        if (tried%error <= 1.0_dp) then
-            if (slips_back(self, t, tried)) tried%error = refused
-        end if
-    end subroutine attempt
-
-    !> Has a contact gone back while it slides, by more than the tolerated error, though its slip
-    !> rate at the end says it has not? Velocities of slow drives are less than their tolerated
-    !> error: a long step would miss the end of slip.
-    pure function slips_back(self, t, tried) result(yes)
-        class(continuous), intent(in) :: self
-        real(dp), intent(in) :: t   !! [T]
-        type(trial), intent(in) :: tried
-        logical :: yes
-        real(dp) :: way, change   ! of the block, of the contact's elastic displacement [L]
-
-        associate (eq => self%block%equations, y => self%block%y)
-            yes = eq%phase == phase_slide .and. eq%mass > 0.0_dp .and. .not. (eq%damper > 0.0_dp &
-                .or. eq%surface%traits%onset == onset_gradual) .and. tried%last(slip) >= 0.0_dp
-            if (.not. yes) return
-            way = self%drive%position(t + tried%h) - self%drive%position(t) - (tried%y(extension) &
-                - y(extension))
-            change = tried%y(elastic) - y(elastic)
-            if (eq%rigid) change = 0.0_dp
-            yes = eq%sense * (way - change) < -(1.0_dp / self%weights(extension) + 1.0_dp &
-                / self%weights(elastic))
-        end associate
-    end function slips_back
-
-    !> May a disturbance grow that the tolerated error does not see? Long steps of Rodas4 would damp
-    !> it: a block would slide steadily that is going to stick. Creep has steps for it anyway.
-    pure function may_grow(eq) result(yes)
-        type(slider_equations), intent(in) :: eq
-        logical :: yes
-
-        yes = eq%across%free() .or. eq%phase == phase_slide .and. .not. eq%surface%traits%stiff
-    end function may_grow
-
-    !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
-    !> sense of the traction, where the drive spring turns, and where the block turns back from
-    !> beyond zero traction, or slip between two ends would not be seen.
-    subroutine swing_on(self, t, tried)
-        class(continuous), intent(inout) :: self
-        real(dp), intent(in) :: t             !! [T]
-        type(trial), intent(inout) :: tried   !! its length is given
-        real(dp), parameter :: far = 1.0e-3_dp   !! part of the step
-        real(dp) :: v_drive, turn
-        type(trial) :: there
-        logical :: failed, found
-
-        associate (block => self%block, eq => self%block%equations)
-            v_drive = block%y(velocity) + block%first(extension)
-            if (eq%sense * block%first(velocity) > 0.0_dp) then
-                turn = self%free%until_it_turns(block%y(:controlled), v_drive, eq%sense)
-                if (turn > far * tried%h) tried%h = min(tried%h, turn)
-            end if
-            call self%free%go_on(tried%h, block%y, v_drive, block%first(memory), tried%y)
-            call pass_speed(self, v_drive, v_drive, tried, there, found)
-            if (found .and. there%h > far * tried%h) tried = there
-            if (eq%sense * block%y(velocity) < 0.0_dp) then
-                call pass_speed(self, v_drive, 0.0_dp, tried, there, found)
-                if (found .and. eq%sense * there%y(elastic) < 0.0_dp) tried = there
-            end if
-            call eq%rates(t + tried%h, tried%y, tried%last, failed)
-        end associate
-        tried%error = 0.0_dp
-        tried%stiffness = 0.0_dp
-        call self%count_iterations(1)
-        self%jumped = .false.
-    end subroutine swing_on
-
-    !> The step that ends where the block passes a velocity within one, if it does.
-    subroutine pass_speed(self, v_drive, speed, whole, part, found)
-        class(continuous), intent(in) :: self
-        real(dp), intent(in) :: v_drive       !! [L/T]
-        real(dp), intent(in) :: speed         !! that it passes [L/T]
-        type(trial), intent(in) :: whole
-        type(trial), intent(out) :: part
-        logical, intent(out) :: found
-        integer, parameter :: most_tries = 40
-        real(dp), parameter :: close = 1.0e-12_dp
-        type(root_bracket) :: bracket
-        real(dp) :: h, sense
-        integer :: i
-
-        associate (block => self%block)
-            sense = sign(1.0_dp, whole%y(velocity) - speed)
-            bracket%high = whole%h
-            bracket%g_low = sense * (block%y(velocity) - speed)
-            bracket%g_high = sense * (whole%y(velocity) - speed)
-            found = bracket%g_low < 0.0_dp
-            part = whole
-            if (.not. found) return
-            h = bracket%guess()
-            do i = 1, most_tries
-                part%h = h
-                call self%free%go_on(h, block%y, v_drive, block%first(memory), part%y)
-                call bracket%take(h, sense * (part%y(velocity) - speed))
-                h = bracket%guess()
-                if (abs(h - part%h) <= close * whole%h) exit
-            end do
-        end associate
-    end subroutine pass_speed
-
     !> What the error of each unknown is compared with.
     subroutine set_weights(self, t)
         class(continuous), intent(inout) :: self
@@ -641,103 +466,6 @@ contains
             call settle(block, t)
         end associate
     end subroutine choose_unknown
-
-    !> Ends a step where its phase does, if it has ended. The error of a shorter step can be larger:
-    !> then it is not taken.
-    subroutine locate(self, t, tried)
-        class(continuous), intent(inout) :: self
-        real(dp), intent(in) :: t                 !! [T]
-        type(trial), intent(inout) :: tried
-        integer, parameter :: most_tries = 40
-        real(dp), parameter :: close = 1.0e-12_dp
-        real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
-        real(dp), parameter :: late = 0.03_dp     !! part of a swing's speed
-        type(trial) :: again
-        type(root_bracket) :: bracket
-        real(dp) :: g(switches), before(switches), middle, share, enough
-        integer :: i, which
-
-        call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
-        if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
-        if (all(g <= 0.0_dp)) return
-        which = 0
-        share = 2.0_dp
-        do i = 1, switches
-            if (g(i) <= 0.0_dp) cycle
-            middle = 1.0_dp
-            if (.not. self%swings) middle = first_root(self%block, t, tried%h, tried%y, &
-                tried%last, i)
-            if (middle <= share) which = i
-            share = min(share, middle)
-        end do
-        enough = 0.0_dp
-        if (self%block%equations%rests .and. which == 1) enough = min(sqrt(unseen * g(which) &
-            / (tried%h * self%weights(elastic))), late * self%free%frequency * free_amplitude(self))
-        bracket%high = tried%h
-        bracket%g_low = -g(which)   ! the start is before the end of the phase, whatever round-off
-                                    ! says
-        bracket%g_high = g(which) - 0.5_dp * enough
-        again = tried
-        middle = tried%h * (share + (1.0_dp - share) * min(1.0_dp, 0.5_dp * enough / g(which)))
-        if (self%swings) then   ! a step in closed form costs no more than a guess
-            call switch_values(self%block%equations, t, self%block%y, self%block%first, before)
-            bracket%g_low = min(before(which), 0.0_dp) - 0.5_dp * enough
-            middle = bracket%guess()
-        end if
-        do i = 1, most_tries
-            again%h = middle
-            call self%attempt(t, again)
-            if (.not. again%error < huge(again%error)) exit
-            if (again%error > 1.0_dp) then
-                tried = again
-                return
-            end if
-            call switch_values(self%block%equations, t + middle, again%y, again%last, g)
-            call bracket%take(middle, g(which) - 0.5_dp * enough)
-            tried = again
-            if (g(which) > 0.0_dp .and. g(which) <= enough) exit
-            middle = bracket%guess()
-            if (abs(middle - again%h) <= max(close * again%h, 0.5_dp * told(t, bracket%high))) exit
-        end do
-        if (g(which) <= 0.0_dp) call pass(self, t, which, bracket%high, tried)
-        tried%switch = which
-    end subroutine locate
-
-    !> What a time can tell, in a step that is not a part of one [T].
-    pure function told(t, h) result(dt)
-        real(dp), intent(in) :: t, h   !! time, length of the step [T]
-        real(dp) :: dt
-
-        dt = shortest * t
-        if (is_short(t, h)) dt = 0.0_dp
-    end function told
-
-    !> Takes a step that ends just before its phase does again, until it ends just after: the next
-    !> phase starts where this one has ended.
-    subroutine pass(self, t, which, latest, tried)
-        class(continuous), intent(inout) :: self
-        real(dp), intent(in) :: t        !! [T]
-        integer, intent(in) :: which     !! way in which the phase ends
-        real(dp), intent(in) :: latest   !! length of a step that is long enough [T]
-        type(trial), intent(inout) :: tried
-        integer, parameter :: most_tries = 60
-        type(trial) :: again
-        real(dp) :: nudge, g(switches)
-        integer :: i
-
-        again = tried
-        nudge = max(1.0e-12_dp * tried%h, told(t, latest))
-        do i = 1, most_tries
-            again%h = min(latest, again%h + nudge)
-            nudge = 2.0_dp * nudge
-            call self%attempt(t, again)
-            if (.not. again%error < huge(again%error)) return
-            tried = again
-            if (again%error > 1.0_dp) return
-            call switch_values(self%block%equations, t + again%h, again%y, again%last, g)
-            if (g(which) > 0.0_dp .or. again%h >= latest) return
-        end do
-    end subroutine pass
 
     !> Changes the method after fifteen steps of the explicit one that stability held far shorter
     !> than the error would (or shorter at all, where there is no swing to lose), or three calm ones
