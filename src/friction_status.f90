@@ -38,7 +38,7 @@ module friction_status
         // c_null_char, &
         'a pointer argument is NULL' // c_null_char, &
         'the contact normal is not a unit vector' // c_null_char, &
-        'no equilibrium found: the increment is beyond the range of the arithmetic' &
+        'no equilibrium found: increment or slip rate beyond the range of the arithmetic' &
         // c_null_char, 'the state variables are out of range or not finite' // c_null_char, &
         'the increment is out of range or not finite, or dtime < 0' // c_null_char, &
         'a material constant is out of range or not finite' // c_null_char, &

@@ -4,6 +4,7 @@ module run_warnings
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use friction_mod, only : friction_facts, law_facts, onset_drops
     use law_facts, only : pressure_effect
+    use number_text, only : rounded_text
     use run_outcome, only : outcome
     use run_settings, only : settings
     implicit none
@@ -110,16 +111,16 @@ contains
 
         if (sum(result%pieces%events) + result%chain_events + result%unresolved == 0) return
         if (result%unresolved > 0) then
-            write (text, '(a, es9.2, a, i0, a)') 'the step dt =', run%dt, ' is too long for ', &
-                result%unresolved, ' slips of blocks, which begin and end within it: they are not &
-                &listed as events'
+            write (text, '(3a, i0, a)') 'the step dt =', rounded_text(run%dt, 9, 2), &
+                ' is too long for ', result%unresolved, &
+                ' slips of blocks, which begin and end within it: they are not listed as events'
             warnings = [warnings, run_warning('long_step', text)]
             return
         end if
         if (run%dt <= longest_step(run, friction_facts(run%props))) return
-        write (text, '(a, es9.2, a, es9.2, a)') 'the step dt =', run%dt, ' is long for slip &
-            &events, which last about pi sqrt(mass/stiffness) =', event_duration(run), &
-            ': take thirty steps or more to an event'
+        text = 'the step dt =' // rounded_text(run%dt, 9, 2) // ' is long for slip events, which ' &
+            // 'last about pi sqrt(mass/stiffness) =' // rounded_text(event_duration(run), 9, 2) &
+            // ': take thirty steps or more to an event'
         warnings = [warnings, run_warning('long_step', text)]
     end subroutine look_at_step
 
@@ -215,7 +216,6 @@ contains
         type(drop_of_friction), intent(in) :: drop
         character(len=:), allocatable :: text
         type(settings) :: other
-        character(len=16) :: number
 
         text = ''
         if (run%chain%n_blocks == 1) text = 'contact = ''rigid'' in &friction and rtol in &time &
@@ -224,12 +224,10 @@ contains
         other%adaptive = .false.
         other%rho_infinity = 0.0_dp
         other%dt = min(1.0_dp / drop%swing, run%t_end)
-        write (number, '(es9.2)') other%dt
         if (dies_away(other, law, drop) .and. other%dt <= longest_step(run, law)) text = text &
-            // 'rho_infinity = 0 with dt = ' // trim(adjustl(number)) // '; '
-        write (number, '(es9.2)') drop%slope / run%area
+            // 'rho_infinity = 0 with dt = ' // trim(adjustl(rounded_text(other%dt, 9, 2))) // '; '
         if (len(text) > 0) text = text // 'or '
-        text = text // 'eta_t above ' // trim(adjustl(number))
+        text = text // 'eta_t above ' // trim(adjustl(rounded_text(drop%slope / run%area, 9, 2)))
         if (run%chain%n_blocks > 1 .and. run%adaptive) text = text // ' in fixed steps'
     end function remedies
 
@@ -241,9 +239,9 @@ contains
         character(len=240) :: text
 
         if (result%time * (1.0_dp - round_off) <= run%drive%measured_until) return
-        write (text, '(a, es12.5, a, es12.5, a)') 'the file of the drive ends at time ', &
-            run%drive%measured_until, ', before t_end = ', run%t_end, ': its last velocity and &
-            &normal traction went on'
+        text = 'the file of the drive ends at time ' &
+            // rounded_text(run%drive%measured_until, 12, 5) // ', before t_end = ' &
+            // rounded_text(run%t_end, 12, 5) // ': its last velocity and normal traction went on'
         warnings = [warnings, run_warning('short_file', text)]
     end subroutine look_at_file
 

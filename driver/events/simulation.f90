@@ -11,6 +11,7 @@ module simulation
         statev_u_et
     use initial_states, only : displace, initial_state, place
     use integrator_choice, only : choose_integrator
+    use number_text, only : rounded_text
     use run_observer, only : observer_slot, step_news
     use run_outcome, only : outcome
     use run_settings, only : settings
@@ -159,8 +160,8 @@ contains
         character(len=*), intent(in) :: why
         character(len=80) :: when
 
-        write (when, '(a, es13.6, a, i0, a)') 'at time ', max(live%state%time, live%other%time), &
-            ', step ', live%taken + 1, ': '
+        write (when, '(3a, i0, a)') 'at time ', rounded_text(max(live%state%time, &
+            live%other%time), 13, 6), ', step ', live%taken + 1, ': '
         live%problem = trim(when) // ' ' // why
     end subroutine tell_when
 

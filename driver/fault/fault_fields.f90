@@ -135,8 +135,8 @@ contains
         integer :: k
 
         cells = [here%plan%nz, here%plan%nx]
-        write (spacing, '(es22.15, 1x, es22.15)') here%plan%dz(), here%plan%dx()
-        write (origin, '(es22.15, 1x, es22.15)') 0.0_dp, here%plan%x_of(1) - 0.5_dp &
+        write (spacing, '(es23.15e3, 1x, es23.15e3)') here%plan%dz(), here%plan%dx()
+        write (origin, '(es23.15e3, 1x, es23.15e3)') 0.0_dp, here%plan%x_of(1) - 0.5_dp &
             * here%plan%dx()
         name = self%parts%base // '_fields.xdmf'
         call file%create(name // '.new')

@@ -11,6 +11,7 @@ module fault_run
     use fault_recorder, only : recorder
     use fault_settings, only : fault_plan
     use fault_stepper, only : stepper
+    use number_text, only : rounded_text
     use platform, only : interrupted, remove_file, report, seconds
     use processes, only : team
     use progress_bar, only : progress
@@ -278,11 +279,11 @@ contains
         write (report, '(a, i0)') 'events         ', live%watch%events
         write (report, '(2a)') 'largest slip   ', text_of(most_slip)
         associate (energy => live%state%energy)
-            write (report, '(8a, es8.1)') 'energy         loading ', text_of(energy%loading), &
+            write (report, '(8a)') 'energy         loading ', text_of(energy%loading), &
                 ' = elastic ', text_of(energy%elastic), ' + dissipated ', &
                 text_of(energy%dissipated), ' + radiated ', text_of(energy%radiated)
-            write (report, '(a, es7.1, a)') '               open by ', energy%unbalanced(), &
-                ' of the largest'
+            write (report, '(3a)') '               open by ', &
+                trim(adjustl(rounded_text(energy%unbalanced(), 8, 1))), ' of the largest'
         end associate
         write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
         write (report, '(3a)') 'results        ', live%base, &

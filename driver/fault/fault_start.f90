@@ -93,9 +93,10 @@ contains
         integer, intent(in) :: cell            !! first one of this process; or 0
         character(len=*), intent(in) :: why    !! all processes say the same
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
-        character(len=24) :: numbers(4)
+        character(len=24) :: numbers(5)
         integer(int64) :: own, first
-        real(dp) :: given(2)
+        real(dp) :: given(3)
+        type(law_facts) :: law
 
         problem = ''
         own = huge(own)
@@ -103,13 +104,21 @@ contains
         first = together%lowest(own)
         if (first == huge(first)) return
         given = -huge(given)
-        if (own == first) given = [state%traction(cell), state%rate(cell)]
+        if (own == first) then
+            law = friction_facts(here%props(cell, :))
+            given = [state%traction(cell), state%rate(cell), law%shear_cap]
+        end if
         call together%largest_of_each(given)
         write (numbers, '(g0.6)') here%plan%x_of(int(modulo(first - 1, int(here%plan%nx, int64))) &
             + 1), here%plan%z_of(int((first - 1) / here%plan%nx) + 1), given
         problem = 'at the start, at x = ' // trim(numbers(1)) // ', z = ' // trim(numbers(2)) &
             // ', under a traction of ' // trim(numbers(3)) // ' and at a slip rate of ' &
-            // trim(numbers(4)) // ': ' // why
+            // trim(numbers(4)) // ': '
+        if (given(1) > given(3)) then
+            problem = problem // 'the traction must not exceed tau_max = ' // trim(numbers(5))
+        else
+            problem = problem // why
+        end if
     end subroutine tell_refused_cell
 
     !> Whether a cell starts as the one before it does: its state is then known.
@@ -138,6 +147,7 @@ contains
         real(dp) :: given(1), contact(statev_size)
         integer :: i, k, cell, status, own_status
         character(len=:), allocatable :: why
+        type(law_facts) :: law
 
         problem = ''
         status = 0
@@ -165,6 +175,8 @@ contains
                     state%rate(cell) = 0.0_dp
                     call load_contact(here%props(cell, :), here%pressure(cell), given(1), -1.0_dp, &
                         contact, status)
+                    law = friction_facts(here%props(cell, :))
+                    if (given(1) > law%shear_cap) status = friction_bad_state
                 end if
                 if (status < 0) exit
                 statev(cell, :) = contact

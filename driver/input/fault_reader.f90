@@ -15,8 +15,7 @@ module fault_reader
     use input_kind, only : refuse_other_verb
     use law_input, only : read_friction, refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
-    use namelist_parser, only : namelist_entry
-    use number_text, only : full_row
+    use number_text, only : full_row, rounded_text
     use profile_reader, only : joined, profile, put_number, read_map, take_profiles
     use text_file, only : gigabyte
     use unit_reader, only : read_units
@@ -135,24 +134,14 @@ contains
     subroutine add_springs(file, plan)
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(in) :: plan
-        character(len=7), parameter :: keys(2) = ['alpha_n', 'alpha_t']
         real(dp), parameter :: stiffer = 1.0e3_dp   !! than the surroundings of a cell
-        type(namelist_entry) :: spring
         real(dp) :: stiffness   !! [F/L^3]
-        integer :: i
 
         stiffness = 1.0_dp
         if (min(plan%width, plan%shear_modulus, real(plan%nz, dp)) > 0.0_dp) stiffness = stiffer &
             * plan%shear_modulus / plan%dz()   ! else no fault that follows from another
-        do i = 1, size(keys)
-            if (file%given('friction', keys(i))) cycle
-            spring%group = 'friction'
-            spring%key = keys(i)
-            allocate (spring%values(1))
-            spring%values(1)%text = full_row([stiffness])
-            file%entries = [file%entries, spring]
-            deallocate (spring%values)
-        end do
+        call file%assume('friction', 'alpha_n', full_row([stiffness]))
+        call file%assume('friction', 'alpha_t', full_row([stiffness]))
     end subroutine add_springs
 
     !> Where it is that constants of a profile are refused.
@@ -311,14 +300,13 @@ contains
         type(fault_plan), intent(in) :: plan
         real(dp), parameter :: row_bytes = 120.0_dp   !! five numbers
         real(dp) :: rows
-        character(len=80) :: text
 
         if (plan%nz < 2) return   ! refused before
         rows = plan%t_end / plan%contours(1) * (plan%nz / plan%contour_stride())
         if (rows * row_bytes <= gigabyte * plan%table_limit) return
-        write (text, '(a, es9.2, a, es9.2)') 'makes a table of', rows * row_bytes / gigabyte, &
-            ' GB, more than table_limit,', plan%table_limit
-        call file%reject('output', 'slip_contours', trim(text))
+        call file%reject('output', 'slip_contours', 'makes a table of' // rounded_text(rows &
+            * row_bytes / gigabyte, 9, 2) // ' GB, more than table_limit,' &
+            // rounded_text(plan%table_limit, 9, 2))
     end subroutine check_contours
 
     !> Another number for any input with other results.

@@ -40,7 +40,7 @@ module namelist_input
         procedure :: has_group, given, require, require_groups, reject, refuse, add_fault, &
             refuse_unknown, describe_faults
         procedure :: line_of_group, belongs_elsewhere, beside, gather
-        procedure :: substitute, value_of, remove, listing
+        procedure :: assume, substitute, value_of, remove, listing
     end type namelist_file
 
 contains
@@ -155,6 +155,20 @@ contains
         call find(self, group, key, mine)
         found = size(mine) > 0
     end function given
+
+    !> Gives a key that the input leaves out a number.
+    subroutine assume(self, group, key, number)
+        class(namelist_file), intent(inout) :: self
+        character(len=*), intent(in) :: group, key, number
+        type(namelist_entry) :: entry
+
+        if (self%given(group, key)) return
+        entry%group = group
+        entry%key = key
+        allocate (entry%values(1))
+        entry%values(1)%text = number
+        self%entries = [self%entries, entry]
+    end subroutine assume
 
     !> The assignments to a key, as places in the list of entries.
     pure subroutine find(self, group, key, places)

@@ -28,6 +28,7 @@ contains
         call file%require_groups(['friction', 'slider  ', 'drive   ', 'time    '])
         call file%get_real('slider', 'mass', run%mass, at_least(0.0_dp))
         call read_chain(file, run%mass, run%chain)
+        call read_contact(file, run)
         call read_block_friction(file, run)
         call refuse_orthotropy(file, 'blocks')
         call file%get_real('slider', 'stiffness', run%stiffness, above(0.0_dp))
@@ -50,7 +51,7 @@ contains
         end if
         if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
             'normal_mass', 'is for one block')
-        call read_contact(file, run)
+        call check_contact(file, run)
         if (run%adaptive .and. allocated(run%drive%normal)) then
             call check_damper(file, run)
             call check_massless(file, run)
@@ -305,9 +306,11 @@ contains
 
         law = friction_facts(run%props)
         if (.not. law%damping > 0.0_dp) return
-        if (run%newmark .or. .not. run%one_by_itself()) then
-            call file%reject(group, key, 'needs fixed steps (&time dt) of a chain, and with ' &
-                // 'beta, gamma or rho_infinity')
+        if (.not. run%one_by_itself()) then
+            call file%reject(group, key, 'needs fixed steps (&time dt) in a chain')
+        else if (run%newmark) then
+            call file%reject(group, key, 'needs fixed steps (&time dt) beside beta, gamma and ' &
+                // 'rho_infinity')
         else if (law%damping <= law%rate_weakening * run%drive%largest_normal()) then
             call file%reject(group, key, 'must exceed d_c (mu_s - mu_k) normal_traction with ' &
                 // 'adaptive steps (&time rtol), or the contact sticks and slips without end')
@@ -353,16 +356,25 @@ contains
             // 'rho_infinity: the state would leave the range of numbers')
     end subroutine check_pressing
 
-    !> The spring of the contact, which continuous time can do without.
+    !> Where continuous time does without the spring of the contact, its stiffness may be left out.
     subroutine read_contact(file, run)
         type(namelist_file), intent(inout) :: file
         type(settings), intent(inout) :: run
-        character(len=*), parameter :: group = 'friction', key = 'contact'
+        character(len=*), parameter :: group = 'friction'
         character(len=:), allocatable :: contact
+
+        call file%get_choice(group, 'contact', contact, ['elastic', 'rigid  '], default='elastic')
+        run%rigid_contact = contact == 'rigid'
+        if (run%rigid_contact) call file%assume(group, 'alpha_t', '1')
+    end subroutine read_contact
+
+    !> What a contact without spring needs.
+    subroutine check_contact(file, run)
+        type(namelist_file), intent(inout) :: file
+        type(settings), intent(in) :: run
+        character(len=*), parameter :: group = 'friction', key = 'contact'
         type(facts) :: law
 
-        call file%get_choice(group, key, contact, ['elastic', 'rigid  '], default='elastic')
-        run%rigid_contact = contact == 'rigid'
         if (.not. run%rigid_contact) return
         if (.not. run%adaptive .or. run%newmark .or. .not. run%one_by_itself()) call file%reject( &
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
@@ -377,6 +389,6 @@ contains
             // 'from the motion (normal_mass)')
         if (law%traits%onset == onset_gradual .and. law%cohesion > 0.0_dp) call file%reject(group, &
             key, 'has no cohesion where the slip rate tells the traction')
-    end subroutine read_contact
+    end subroutine check_contact
 
 end module run_reader

@@ -7,6 +7,7 @@ module material_point
         friction_snap_back, friction_update, prop_alpha_n, prop_alpha_t, statev_mu, statev_size, &
         statev_u_n
     use lapack_interface, only : dgesv
+    use number_text, only : rounded_text
     implicit none
     private
 
@@ -223,13 +224,14 @@ contains
         character(len=200) :: buffer
 
         if (by_traction(1) .and. values(1) > 0.0_dp) then
-            write (buffer, '(a, es12.5)') 'a contact carries no tension: t_n = ', values(1)
+            buffer = 'a contact carries no tension: t_n = ' // rounded_text(values(1), 12, 5)
         else if (any(by_traction(2:)) .and. .not. point%traction(1) < 0.0_dp) then
             buffer = 'an open contact carries no tangential traction'
         else if (any(by_traction(2:)) .and. status == friction_no_convergence) then
-            write (buffer, '(2(a, es12.5), a)') 'the tangential traction cannot be carried: ' &
-                // 'beyond ', norm2(point%traction(2:)), ' (mu |t_n| = ', &
-                -point%statev(statev_mu) * point%traction(1), ') the contact gives way'
+            buffer = 'the tangential traction cannot be carried: beyond ' &
+                // rounded_text(norm2(point%traction(2:)), 12, 5) // ' (mu |t_n| = ' &
+                // rounded_text(-point%statev(statev_mu) * point%traction(1), 12, 5) &
+                // ') the contact gives way'
         else
             buffer = friction_message(status)
         end if

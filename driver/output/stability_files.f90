@@ -3,7 +3,7 @@
 module stability_files
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use linear_stability, only : critical_value, stability, unstable, verdicts
-    use number_text, only : full_row, quoted_field, whole_text
+    use number_text, only : full_row, quoted_field, rounded_text, whole_text
     use picture, only : picture_values
     use platform, only : report
     use stability_map, only : plane_map
@@ -65,20 +65,21 @@ contains
 
         numbers = answer%numbers()
         if (pieces > 1) write (report, '(a, i0)') 'piece              ', answer%piece
-        write (report, '(2(a, es14.6), a)') 'steady sliding     ', numbers(2), ' [L/T] under ', &
-            numbers(3), ' [F/L^2]'
+        write (report, '(5a)') 'steady sliding     ', rounded_text(numbers(2), 14, 6), &
+            ' [L/T] under ', rounded_text(numbers(3), 14, 6), ' [F/L^2]'
         associate (result => answer%result)
             if (len(result%problem) > 0) then
                 write (report, '(2a)') 'stability          none: ', result%problem
                 return
             end if
-            write (report, '(a, es14.6)') 'friction           ', numbers(4)
+            write (report, '(2a)') 'friction           ', rounded_text(numbers(4), 14, 6)
             write (report, '(2a)') 'stability          ', trim(verdicts(result%verdict))
-            write (report, '(2(a, es14.6), a)') 'fastest growth     ', result%growth, &
-                ' [1/T] at ', result%frequency, ' [1/T]'
+            write (report, '(5a)') 'fastest growth     ', rounded_text(result%growth, 14, 6), &
+                ' [1/T] at ', rounded_text(result%frequency, 14, 6), ' [1/T]'
             do i = 1, size(result%eigenvalues)
-                write (report, '(a, 2es23.14, a)') merge('eigenvalues        ', &
-                    '                   ', i == 1), result%eigenvalues(i), ' i'
+                write (report, '(4a)') merge('eigenvalues        ', '                   ', &
+                    i == 1), rounded_text(real(result%eigenvalues(i)), 23, 14), &
+                    rounded_text(aimag(result%eigenvalues(i)), 23, 14), ' i'
             end do
         end associate
         do i = 1, criticals
@@ -95,10 +96,10 @@ contains
         integer :: i
 
         title = 'critical ' // key(index(key, '%') + 1:)
-        if (size(found) == 0) write (report, '(2a, 2(es8.1, a))') title, ' none from ', range(1), &
-            ' to ', range(2)
+        if (size(found) == 0) write (report, '(5a)') title, ' none from ', &
+            rounded_text(range(1), 8, 1), ' to ', rounded_text(range(2), 8, 1)
         do i = 1, size(found)
-            write (report, '(a, es23.15, 2a)') title, found(i)%value, ': ', &
+            write (report, '(4a)') title, rounded_text(found(i)%value, 23, 15), ': ', &
                 merge('stable above  ', 'unstable above', found(i)%stable_above)
             title = ''
         end do

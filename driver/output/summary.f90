@@ -2,6 +2,7 @@
 module summary
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use, intrinsic :: iso_fortran_env, only : dp => real64, error_unit
+    use number_text, only : rounded_text
     use piece_table, only : pieces_reached
     use platform, only : report
     use run_outcome, only : event_totals, outcome
@@ -48,8 +49,8 @@ contains
         character(len=:), allocatable :: most
 
         all = total(result%pieces)
-        write (report, '(a, i0, a, es12.5, a)') 'steps              ', result%steps, &
-            ' to time ', result%time, ' [T]'
+        write (report, '(a, i0, 3a)') 'steps              ', result%steps, ' to time ', &
+            rounded_text(result%time, 12, 5), ' [T]'
         if (result%in_rates) then
             write (report, '(3a)') 'rate evaluations   ', trim(per_step(result%iterations, &
                 result%steps)), ' a step, with those of rejected steps'
@@ -107,8 +108,8 @@ contains
             return
         end if
         apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
-        write (report, '(2(a, es10.3), a)') 'event-time error   largest ', maxval(apart), &
-            ', mean ', sum(apart) / size(apart), ' [T], by a tighter run'
+        write (report, '(5a)') 'event-time error   largest ', rounded_text(maxval(apart), 10, 3), &
+            ', mean ', rounded_text(sum(apart) / size(apart), 10, 3), ' [T], by a tighter run'
     end subroutine print_event_times
 
     pure function per_step(total, steps) result(text)
@@ -145,7 +146,7 @@ contains
         character(len=12) :: text
 
         text = '-'
-        if (count > 0) write (text, '(es12.5)') total / count
+        if (count > 0) text = rounded_text(total / count, 12, 5)
         text = adjustl(text)
     end function mean
 
@@ -158,8 +159,10 @@ contains
         write (report, '(a)') 'from time    velocity     normal       events  period       ' &
             // 'stress drop  peak velocity'
         do i = 1, size(pieces)
-            write (report, '(3(es11.4, 2x), i6, 2x, 2(a, 1x), a)') run%drive%start(i), &
-                run%drive%velocity(i), run%drive%normal(i), pieces(i)%events, &
+            write (report, '(3(a, 2x), i6, 2x, 2(a, 1x), a)') &
+                rounded_text(run%drive%start(i), 11, 4), &
+                rounded_text(run%drive%velocity(i), 11, 4), &
+                rounded_text(run%drive%normal(i), 11, 4), pieces(i)%events, &
                 mean(pieces(i)%period, pieces(i)%recurrences), &
                 mean(pieces(i)%force_drop / run%area, pieces(i)%events), &
                 mean(pieces(i)%peak_velocity, min(1, pieces(i)%events))
@@ -170,15 +173,16 @@ contains
         type(outcome), intent(in) :: result
 
         associate (e => result%energy)
-            write (report, '(a, es14.6, a)') 'work of the drive  ', e%drive_work, ' [F L] ='
-            if (abs(e%at_start) > 0.0_dp) write (report, '(a, es14.6)') &
-                '  less the start   ', -e%at_start
-            write (report, '(a, es14.6)') '  kinetic          ', e%kinetic
-            write (report, '(a, es14.6)') '  spring           ', e%spring
-            write (report, '(a, es14.6)') '  contact, elastic ', e%contact
-            write (report, '(a, es14.6)') '  damped           ', e%damped
-            write (report, '(a, es14.6)') '  dissipated       ', e%dissipated
-            write (report, '(a, es14.6)') '  unbalanced       ', e%unbalanced()
+            write (report, '(3a)') 'work of the drive  ', &
+                rounded_text(e%drive_work, 14, 6), ' [F L] ='
+            if (abs(e%at_start) > 0.0_dp) write (report, '(2a)') &
+                '  less the start   ', rounded_text(-e%at_start, 14, 6)
+            write (report, '(2a)') '  kinetic          ', rounded_text(e%kinetic, 14, 6)
+            write (report, '(2a)') '  spring           ', rounded_text(e%spring, 14, 6)
+            write (report, '(2a)') '  contact, elastic ', rounded_text(e%contact, 14, 6)
+            write (report, '(2a)') '  damped           ', rounded_text(e%damped, 14, 6)
+            write (report, '(2a)') '  dissipated       ', rounded_text(e%dissipated, 14, 6)
+            write (report, '(2a)') '  unbalanced       ', rounded_text(e%unbalanced(), 14, 6)
         end associate
     end subroutine print_energy
 

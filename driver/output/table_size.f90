@@ -2,6 +2,7 @@
 module table_size
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use chain_fields, only : chain_record_bytes
+    use number_text, only : rounded_text
     use run_rows, only : series_size
     use run_settings, only : settings
     use text_file, only : gigabyte
@@ -34,14 +35,13 @@ contains
     subroutine check_table_size(run, problem)
         type(settings), intent(in) :: run
         character(len=:), allocatable, intent(out) :: problem
-        character(len=200) :: text
 
         problem = ''
         if (expected_bytes(run) <= run%table_limit * gigabyte) return
-        write (text, '(a, es9.2, a, es9.2, a)') '&output table_limit: the tables are going to ' &
-            // 'take', expected_bytes(run) / gigabyte, ' GB, more than', run%table_limit, &
-            ' GB: choose a larger interval (or every, fields), or raise table_limit'
-        problem = trim(text)
+        problem = '&output table_limit: the tables are going to take' &
+            // rounded_text(expected_bytes(run) / gigabyte, 9, 2) // ' GB, more than' &
+            // rounded_text(run%table_limit, 9, 2) // ' GB: choose a larger interval (or every, ' &
+            // 'fields), or raise table_limit'
     end subroutine check_table_size
 
 end module table_size

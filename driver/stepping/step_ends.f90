@@ -3,6 +3,7 @@
 module step_ends
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_programme, only : programme
+    use number_text, only : rounded_text
     use run_settings, only : next_row
     implicit none
     private
@@ -126,13 +127,12 @@ contains
     pure function why_too_short(dt_min) result(why)
         real(dp), intent(in) :: dt_min   !! shortest step [T]; 0: what round-off of the time allows
         character(len=:), allocatable :: why
-        character(len=10) :: limit
 
         why = 'the error exceeds rtol even in steps as short as the round-off of the time, which ' &
             // 'is finer in a run that starts (&initial) shortly before'
         if (.not. dt_min > 0.0_dp) return
-        write (limit, '(es10.3)') dt_min
-        why = 'the error exceeds rtol even in steps as short as dt_min = ' // trim(adjustl(limit))
+        why = 'the error exceeds rtol even in steps as short as dt_min = ' &
+            // trim(adjustl(rounded_text(dt_min, 10, 3)))
     end function why_too_short
 
 end module step_ends

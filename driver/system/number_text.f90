@@ -5,7 +5,7 @@ module number_text
     implicit none
     private
 
-    public :: full_row, quoted_field, short_text, whole_text
+    public :: full_row, quoted_field, rounded_text, short_text, whole_text
 
 contains
 
@@ -156,6 +156,21 @@ contains
         text = trim(adjustl(text // buffer(ends + 1:)))
         if (.not. abs(number) > 0.0_dp) text = '0'
     end function short_text
+
+    !> A number as format es has it, with a digit less where the exponent has three: Fortran leaves
+    !> out the E before it there, and no other language reads 1.0-100.
+    pure function rounded_text(number, width, digits) result(text)
+        real(dp), intent(in) :: number
+        integer, intent(in) :: width, digits   !! in all; behind the point, >= 1
+        character(len=width) :: text
+        character(len=16) :: form
+
+        write (form, '(2(a, i0), a)') '(es', width, '.', digits, ')'
+        write (text, form) number
+        if (index(text, 'E') > 0 .or. scan(text, '.') == 0) return   ! NaN and Infinity have none
+        write (form, '(2(a, i0), a)') '(es', width, '.', digits - 1, 'e3)'
+        write (text, form) number
+    end function rounded_text
 
     !> A text as one field of a CSV file, whatever it contains.
     pure function quoted_field(text) result(field)

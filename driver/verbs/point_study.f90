@@ -7,6 +7,7 @@ module point_study
     use loading_path, only : point_run
     use material_point, only : contact_point, load_report, virgin_point
     use namelist_input, only : namelist_file
+    use number_text, only : rounded_text
     use platform, only : interrupted, report, watch_for_interrupts
     use point_recorder, only : point_csv
     use point_reader, only : read_point_settings
@@ -135,8 +136,8 @@ contains
             result%most_iterations = max(result%most_iterations, report%iterations)
             result%cuts = result%cuts + report%cuts
             if (report%snap_back) result%snap_backs = result%snap_backs + 1
-            write (place, '(a, es13.6, a, i0, a)') 'at time ', result%time, ', increment ', &
-                result%increments + 1, ': '
+            write (place, '(3a, i0, a)') 'at time ', rounded_text(result%time, 13, 6), &
+                ', increment ', result%increments + 1, ': '
             if (len(report%failure) > 0) result%failure = trim(place) // ' ' // report%failure
             if (.not. report%done > 0.0_dp) return
             if (len(report%failure) == 0) result%increments = result%increments + 1
@@ -166,8 +167,8 @@ contains
         real(dp) :: dissipated
 
         dissipated = point%statev(statev_dissipation)
-        write (report, '(a, i0, a, es12.5, a)') 'increments         ', result%increments, &
-            ' to time ', result%time, ' [T]'
+        write (report, '(a, i0, 3a)') 'increments         ', result%increments, &
+            ' to time ', rounded_text(result%time, 12, 5), ' [T]'
         write (report, '(a, i0, a, i0)') 'Newton iterations  ', result%iterations, &
             ', most in an increment ', result%most_iterations
         if (result%cuts > 0) write (report, '(a, i0, a)') 'cuts               ', &
@@ -177,13 +178,13 @@ contains
             ' increments saw several equilibria: take more steps or a larger alpha_t'
         call print_peak('largest pressure   ', result%pressure)
         call print_peak('largest shear      ', result%shear)
-        write (report, '(a, es14.6, a)') 'slip               ', point%statev(statev_slip), &
-            ' [L]'
-        write (report, '(a, es14.6, a)') 'work               ', point%work, ' [F/L] ='
-        write (report, '(a, es14.6)') '  stored           ', point%stored()
-        write (report, '(a, es14.6)') '  dissipated       ', dissipated
-        write (report, '(a, es14.6)') '  unbalanced       ', &
-            point%work - point%stored() - dissipated
+        write (report, '(3a)') 'slip               ', &
+            rounded_text(point%statev(statev_slip), 14, 6), ' [L]'
+        write (report, '(3a)') 'work               ', rounded_text(point%work, 14, 6), ' [F/L] ='
+        write (report, '(2a)') '  stored           ', rounded_text(point%stored(), 14, 6)
+        write (report, '(2a)') '  dissipated       ', rounded_text(dissipated, 14, 6)
+        write (report, '(2a)') '  unbalanced       ', &
+            rounded_text(point%work - point%stored() - dissipated, 14, 6)
         write (report, '(2a)') 'table              ', table
     end subroutine print_summary
 
@@ -191,8 +192,8 @@ contains
         character(len=*), intent(in) :: title
         type(peak), intent(in) :: highest
 
-        write (report, '(a, es14.6, a, es12.5)') title, highest%value, ' [F/L^2] at time ', &
-            highest%time
+        write (report, '(4a)') title, rounded_text(highest%value, 14, 6), ' [F/L^2] at time ', &
+            rounded_text(highest%time, 12, 5)
     end subroutine print_peak
 
 end module point_study

@@ -146,6 +146,9 @@ def namelists(content: bytes, name: str = 'input') -> Namelists:
 
 def columns(content: bytes, names: Sequence[str]) -> tuple[np.ndarray, str]:
     """Columns of a table, as the program reads measured files, one after the other; and what is wrong with it, a line each."""
+    for name in names:
+        if '\0' in name:   # C's texts end there
+            return np.empty((0, 0)), f'column {name!r}: holds a character 0, which no name does'
     result = ctypes.c_void_p()
     wanted = (ctypes.c_char_p * len(names))(*[name.encode() for name in names])
     _columns(content, len(content), len(names), wanted, ctypes.byref(result))

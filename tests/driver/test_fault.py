@@ -725,13 +725,16 @@ class Laws(FaultTest):
         self.assertAlmostEqual(float(first['log10_slip_rate']), math.log10(4e-10), delta=1e-9)
         self.assertAlmostEqual(float(first['traction']), 80e6, delta=1)
 
-    def test_a_start_that_no_state_gives_is_refused_with_its_place(self):
+    def test_a_start_above_the_cap_is_refused_with_its_place(self):
         text = self.start('30e6', 1e-9).replace('f0 = 0.6', 'f0 = 0.6, tau_max = 29e6')
         for processes in (1, 3) if MPIRUN else (1,):
             told = self.run_fault(self.write(text), expect=1, processes=processes).stderr
             told = told.replace(' .', ' 0.')   # a compiler may leave out this zero
-            self.assertIn('z = 312.500, under a traction of 0.300000E+8 and at a slip rate of 0.100000E-8: no state of friction '
-                          'slides so', told)
+            self.assertIn('z = 312.500, under a traction of 0.300000E+8 and at a slip rate of 0.100000E-8: the traction must '
+                          'not exceed tau_max = 0.290000E+8', told)
+        (self.place / 'a.csv').write_text(A.replace('22.5e6', '22.6e6'))
+        told = self.run_fault(self.write(SUBLOADING.replace('m = ', 'tau_max = 22e6, m = ')), expect=1).stderr
+        self.assertIn('the traction must not exceed tau_max = 0.22', told.replace(' .', ' 0.'))
 
     def test_a_start_beyond_the_strength_is_refused(self):
         (self.place / 'a.csv').write_text(A.replace('22.5e6', '40e6'))

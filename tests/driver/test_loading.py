@@ -458,6 +458,20 @@ class ContinuousTime(Columns):
         self.assertAlmostEqual(last['recurrence_time'], 3778.623, delta=0.06)
         self.assertAlmostEqual(last['stress_drop'], 3.55e6, delta=1e3)
 
+    def test_a_rigid_contact_needs_no_stiffness_of_its_spring(self):
+        friction = "&friction contact='rigid', law='coulomb', alpha_n=1000, mu=0.4"
+        rest = ' /\n&slider mass=1, stiffness=1, normal_traction=1 /\n&drive velocity=1 /\n&time t_end=5, rtol=1e-6 /\n'
+        tables = set()
+        for spring in ('', ', alpha_t=100', ', alpha_t=1e9'):
+            self.run_columns(friction + spring + rest)
+            tables.add((self.folder / 'case_out/case.csv').read_bytes())
+        self.assertEqual(len(tables), 1)
+        result = self.run_text(friction + rest + '&chain n_blocks=3, coupling=1 /', verb='check')
+        self.assertEqual(result.stderr.count('&friction'), 1, result.stderr)
+        self.assertIn("contact = 'rigid': needs adaptive steps (&time rtol) of one block", result.stderr)
+        result = self.run_text(friction.replace('rigid', 'elastic') + rest, verb='check')
+        self.assertIn('&friction alpha_t: is missing and has no default', result.stderr)
+
     def test_a_rigid_contact_is_the_limit_of_stiff_ones(self):
         # scipy's Radau at rtol 1e-9: 3778.0755
         steps, = self.summary(self.inertial.replace('&friction', "&friction contact='rigid',").replace('1e-5 /', '1e-7 /'), 'steps')

@@ -100,6 +100,15 @@ class Program(unittest.TestCase):
 
 
 class GoodInput(Program):
+    def test_small_numbers_are_shown_with_the_e_of_their_exponent(self):
+        small = namelist({('friction', key): f'{value}e-60' for key, value in (('alpha_n', 1), ('alpha_t', 1))}
+                         | {('friction', 'kappa'): '10e60', ('friction', 'm'): '1000e60', ('slider', 'mass'): '1e-63',
+                            ('slider', 'stiffness'): '1e-60', ('slider', 'damping'): '1e-62', ('slider', 'normal_traction'): '1e-62',
+                            ('drive', 'velocity'): '1e-60', ('time', 't_end'): '1'})
+        result = self.run_text(small, '--no-plot')
+        self.assertNotRegex(result.stdout, r'\d[-+]\d{3}')
+        self.assertRegex(result.stdout, r'work of the drive    2\.\d{5}E-181 ')
+
     def test_run_leaves_the_promised_files(self):
         result = self.run_text(namelist(), '--no-plot')
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -619,6 +619,13 @@ class Records(unittest.TestCase):
                 with self.assertRaisesRegex(stickslip.RecordError, words):
                     stickslip.Record.read(path, time='t', force=name, start=2.0)
 
+    def test_a_character_0_in_the_name_of_a_column_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, 'a.csv')
+            path.write_text('time,spring_force\n0,0\n1,1\n2,2\n')
+            with self.assertRaisesRegex(stickslip.RecordError, r"column 'time\\x00s': holds a character 0"):
+                stickslip.Record.read(path, time='time\0s')
+
     def test_columns_are_found_as_the_program_finds_them(self):
         plain = [f'{t:.4f},{force:.5f}' for t, force in zip(self.time, self.force)]
         with tempfile.TemporaryDirectory() as folder:
