@@ -68,8 +68,8 @@ int friction_update_points(int64_t n, int ndir, const double *du, double dtime, 
                            int nstatv, double *statev, double *traction, double *tangent, int *status);
 
 /* Slip rates of n points without a contact spring: v >= 0 with tau - damping v = friction(v, internal, pressure),
- * and the rate of the internal variable at that v. For rate-and-state friction (law 4) alone; others get
- * FRICTION_BAD_LAW.
+ * and the rate of the internal variable at that v. For rate-and-state friction (laws 4, 7 and 8) alone; others
+ * get FRICTION_BAD_LAW.
  *   tau            magnitudes of the tangential traction, >= 0, n numbers [F/L^2]
  *   pressure       >= 0, n numbers [F/L^2]
  *   damping        radiation damping, >= 0, e.g. G/(2 c_s) [F T/L^3]

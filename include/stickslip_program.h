@@ -62,7 +62,7 @@ enum stickslip_outcome {
  * one block), "pieces" (of the programme), "summary" (one row); or of stickslip_stability.
  *   rows      receives the number of rows
  *   columns   receives the number of columns
- *   names     receives the names of the columns with commas between them
+ *   names     receives the names of the columns with commas between them; each of the three may be NULL
  * Returns its numbers, row after row, or NULL where there is no such table. They, and the names, live as long as the
  * result. */
 const double *stickslip_table(const stickslip_result *result, const char *table, int64_t *rows, int *columns,

@@ -135,13 +135,22 @@ contains
         type(c_ptr), pointer :: place
 
         nullify (this)
+        call forget(result)
+        if (.not. (c_associated(result) .and. c_associated(name) .and. c_associated(text))) return
+        allocate (this)
+        call c_f_pointer(result, place)
+        place = c_loc(this)
+    end subroutine make_result
+
+    !> There is no result, and what its place held is not to be freed as one.
+    subroutine forget(result)
+        type(c_ptr), intent(in) :: result   !! place of a pointer, or NULL
+        type(c_ptr), pointer :: place
+
         if (.not. c_associated(result)) return
         call c_f_pointer(result, place)
         place = c_null_ptr
-        if (.not. (c_associated(name) .and. c_associated(text))) return
-        allocate (this)
-        place = c_loc(this)
-    end subroutine make_result
+    end subroutine forget
 
     !> `stickslip_stability` of include/stickslip_program.h. Of the reasons there is a line a row.
     function c_stability(name, text, result) result(status) bind(C, name='stickslip_stability')
@@ -216,6 +225,7 @@ contains
         character(len=:), allocatable :: problem
 
         status = friction_null_pointer
+        call forget(result)
         if (bytes < 0) return
         call make_result(name, content, result, this)
         if (.not. associated(this)) return
@@ -242,11 +252,12 @@ contains
         integer(c_int) :: status
         type(run_result), pointer :: this
         type(c_ptr), pointer :: name(:)
-        type(column_request) :: requests(max(n, 0))
+        type(column_request), allocatable :: requests(:)
         type(table) :: read_in
         integer :: i
 
         status = friction_null_pointer
+        call forget(result)
         if (n < 1 .or. bytes < 0) return
         if (c_associated(names)) then
             call c_f_pointer(names, name, [n])
@@ -254,6 +265,7 @@ contains
         end if
         call make_result(content, names, result, this)
         if (.not. associated(this)) return
+        allocate (requests(n))
         !$omp critical (stickslip_reading)
         do i = 1, n
             requests(i)%name = fortran_text(name(i))
@@ -297,52 +309,65 @@ contains
     function c_table(result, table, rows, columns, names) result(values) &
         bind(C, name='stickslip_table')
         type(c_ptr), value, intent(in) :: result, table
-        integer(c_int64_t), intent(out) :: rows
-        integer(c_int), intent(out) :: columns
-        type(c_ptr), intent(out) :: names
+        type(c_ptr), value, intent(in) :: rows, columns, names   !! places; NULL: nobody asks
         type(c_ptr) :: values
-        type(run_result), pointer :: this
+        type(memory_table), pointer :: found
+        integer(c_int64_t), pointer :: to_rows
+        integer(c_int), pointer :: to_columns
+        type(c_ptr), pointer :: to_names
+        integer(c_int64_t) :: n_rows
+        integer(c_int) :: n_columns
+        type(c_ptr) :: its_names
 
         values = c_null_ptr
-        names = c_null_ptr
-        rows = 0
-        columns = 0
-        if (.not. (c_associated(result) .and. c_associated(table))) return
-        call c_f_pointer(result, this)
-        select case (fortran_text(table))
-        case ('series')
-            call show(this%found%series, rows, columns, names, values)
-        case ('events')
-            call show(this%found%events, rows, columns, names, values)
-        case ('catalogue')
-            call show(this%found%catalogue, rows, columns, names, values)
-        case ('pieces')
-            call show(this%pieces, rows, columns, names, values)
-        case ('summary')
-            call show(this%summary, rows, columns, names, values)
-        case ('stability')
-            call show(this%steady, rows, columns, names, values)
-        case ('eigenvalues')
-            call show(this%eigenvalues, rows, columns, names, values)
-        case ('columns')
-            call show(this%columns, rows, columns, names, values)
-        case default   ! none
-        end select
+        its_names = c_null_ptr
+        n_rows = 0
+        n_columns = 0
+        call find_table(result, table, found)
+        if (associated(found)) then
+            n_rows = found%rows
+            if (allocated(found%values)) then   ! else nothing was run
+                n_columns = size(found%values, 1)
+                its_names = c_loc(found%columns)
+                values = c_loc(found%values)
+            end if
+        end if
+        call c_f_pointer(rows, to_rows)
+        call c_f_pointer(columns, to_columns)
+        call c_f_pointer(names, to_names)
+        if (c_associated(rows)) to_rows = n_rows
+        if (c_associated(columns)) to_columns = n_columns
+        if (c_associated(names)) to_names = its_names
     end function c_table
 
-    subroutine show(table, rows, columns, names, values)
-        type(memory_table), target, intent(in) :: table
-        integer(c_int64_t), intent(out) :: rows
-        integer(c_int), intent(out) :: columns
-        type(c_ptr), intent(inout) :: names, values
+    subroutine find_table(result, name, found)
+        type(c_ptr), intent(in) :: result, name
+        type(memory_table), pointer, intent(out) :: found   !! null: there is none of that name
+        type(run_result), pointer :: this
 
-        rows = table%rows
-        columns = 0
-        if (.not. allocated(table%values)) return   ! nothing was run
-        columns = size(table%values, 1)
-        names = c_loc(table%columns)
-        values = c_loc(table%values)
-    end subroutine show
+        nullify (found)
+        if (.not. (c_associated(result) .and. c_associated(name))) return
+        call c_f_pointer(result, this)
+        select case (fortran_text(name))
+        case ('series')
+            found => this%found%series
+        case ('events')
+            found => this%found%events
+        case ('catalogue')
+            found => this%found%catalogue
+        case ('pieces')
+            found => this%pieces
+        case ('summary')
+            found => this%summary
+        case ('stability')
+            found => this%steady
+        case ('eigenvalues')
+            found => this%eigenvalues
+        case ('columns')
+            found => this%columns
+        case default   ! none
+        end select
+    end subroutine find_table
 
     !> `stickslip_report` of include/stickslip_program.h.
     function c_report(result, report) result(text) bind(C, name='stickslip_report')
