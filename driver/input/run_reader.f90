@@ -244,7 +244,7 @@ contains
             call file%refuse(group, 'dt_max', 'needs rtol')
         end if
         run%n_steps = 0
-        if (size(file%faults) > faults_before .or. .not. run%dt > 0.0_dp) return
+        if (size(file%faults) > faults_before .or. .not. min(run%dt, run%t_end) > 0.0_dp) return
         if (run%dt > run%t_end) call file%reject(group, 'dt', 'must not exceed t_end')
         if (run%adaptive) return
         if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) then

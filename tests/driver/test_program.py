@@ -398,6 +398,10 @@ class Laws(Program):
 
 
 class BadInput(Program):
+    def test_an_end_that_is_not_there_is_no_end_before_the_first_step(self):
+        result = self.run_text(namelist({('time', 't_end'): ''}), verb='check')
+        self.assertEqual([line.split(': ', 1)[1] for line in result.stderr.splitlines()], ['&time t_end: has no value'])
+
     def test_unknown_key_and_group(self):
         self.refused(namelist({('slider', 'masss'): '1', ('slides', 'x'): '1'}),
                      '&slider masss: unknown key', '&slides: unknown group')
