@@ -816,11 +816,14 @@ contains
         type(law_state), intent(in) :: state
         real(wp), intent(in) :: rate, pressure
         real(wp), intent(out) :: resistance, by_rate
-        real(wp) :: x
+        real(wp), parameter :: steepest = 2.0_wp**1000   ! so that it stays a number
+        real(wp) :: x, direct
 
         x = direct_exponent(self, max(rate, least_rate), 1.0_wp, log(state%r))
-        resistance = self%a * pressure * asinh_exp(x)
-        by_rate = self%a * pressure * slope_asinh_exp(x) / max(rate, least_rate)
+        direct = self%a * pressure
+        resistance = direct * asinh_exp(x)
+        by_rate = direct * min(slope_asinh_exp(x) / max(rate, least_rate), steepest &
+            / max(direct, 1.0_wp))
     end subroutine resistance_at
 
     pure function resistance_by_memory(self, state, rate, pressure) result(derivative)
