@@ -42,8 +42,8 @@ contains
                 tilt_of_decay(healing, decay)))
             full = block%mu_rest(i) * block%pressure(i)
             block%strength(i) = max(block%r(i), least_ratio) * full
+            ! beside no strength at all only a surface without traction rests
             block%r_rest(i) = min(block%traction(i) / max(full, least), 1.0_wp)
-            if (full <= 0.0_wp) block%r_rest(i) = 0.0_wp
             block%valid(i) = min(constants(i, c_mu_s) - block%mu(i), &
                 block%mu(i) - constants(i, c_mu_k), block%r(i), 1.0_wp - block%r(i))
         end do
