@@ -15,7 +15,7 @@ module continuous_steps
     use phase_changes, only : change_phase, follow_velocity, lifts, phase_at_rest, settle
     use run_settings, only : settings
     use slider_rates, only : away, damped, drive_work, elastic, extension, memory, phase_open, &
-        phase_slide, phase_stick, place, slip, slider_equations, velocity
+        phase_stick, place, slip, slider_equations, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring

@@ -332,12 +332,18 @@ contains
                 values = c_loc(found%values)
             end if
         end if
-        call c_f_pointer(rows, to_rows)
-        call c_f_pointer(columns, to_columns)
-        call c_f_pointer(names, to_names)
-        if (c_associated(rows)) to_rows = n_rows
-        if (c_associated(columns)) to_columns = n_columns
-        if (c_associated(names)) to_names = its_names
+        if (c_associated(rows)) then
+            call c_f_pointer(rows, to_rows)
+            to_rows = n_rows
+        end if
+        if (c_associated(columns)) then
+            call c_f_pointer(columns, to_columns)
+            to_columns = n_columns
+        end if
+        if (c_associated(names)) then
+            call c_f_pointer(names, to_names)
+            to_names = its_names
+        end if
     end function c_table
 
     subroutine find_table(result, name, found)

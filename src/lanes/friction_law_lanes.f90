@@ -5,7 +5,7 @@ module friction_law_lanes
     use friction_coulomb_lanes, only : rest_coulomb, slide_coulomb
     use friction_lane_block, only : block_task, lane_ageing, lane_cotangent, lane_coulomb, &
         lane_exact_rate, lane_flash_heating, lane_healing, lane_pressed_ageing, &
-        lane_pressed_slip_law, lane_reciprocal, lane_slip_law, lane_slip_weakening, &
+        lane_pressed_slip_law, lane_reciprocal, lane_slip_weakening, &
         lane_static_kinetic, lane_subloading, lanes, n_constants, rest_block, slide_block
     use friction_rate_state_lanes, only : rest_rate_state, slide_rate_state, state_rate_state
     use friction_slip_weakening_lanes, only : rest_slip_weakening, slide_slip_weakening, &

@@ -3,7 +3,7 @@ module friction_subloading_lanes
     use, intrinsic :: iso_fortran_env, only : wp => real64
     use friction_lane_block, only : c_own, lanes, least_ratio, n_constants, rest_block, &
         slide_block
-    use friction_subloading_core, only : chebyshev, coefficient, fall_of_coefficient, inverses, &
+    use friction_subloading_core, only : chebyshev, coefficient, inverses, &
         logarithm_after, moved, ratio_step, reserve, settled, slip_guess, slip_move, slip_task, &
         slope, start_far
     implicit none

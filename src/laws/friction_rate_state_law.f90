@@ -27,7 +27,7 @@ module friction_rate_state_law
         fall_of_mean, mean_decay, mean_growth, pressed_by, slip_law_rate, slipped_slope, &
         slope_asinh_exp, &
         state_exponent
-    use friction_status, only : friction_bad_property, friction_bad_size, friction_ok
+    use friction_status, only : friction_bad_property, friction_bad_size
     implicit none
     private
 

@@ -4,17 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "check.h"
 #include "friction.h"
-
-static int failures = 0;
-
-#define CHECK(condition)                                                       \
-    do {                                                                       \
-        if (!(condition)) {                                                    \
-            fprintf(stderr, "line %d: %s does not hold\n", __LINE__, #condition); \
-            failures++;                                                        \
-        }                                                                      \
-    } while (0)
 
 static const double props[9] = {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3};
 

@@ -1,19 +1,9 @@
 /* The program's C interface where arguments are NULL or sizes make no sense: codes and NULL, never a crash, and no result
  * that is not one. */
-#include <stdio.h>
 #include <string.h>
 
+#include "check.h"
 #include "stickslip_program.h"
-
-static int failures = 0;
-
-#define CHECK(condition)                                                       \
-    do {                                                                       \
-        if (!(condition)) {                                                    \
-            fprintf(stderr, "line %d: %s does not hold\n", __LINE__, #condition); \
-            failures++;                                                        \
-        }                                                                      \
-    } while (0)
 
 static const char input[] = "&friction law='coulomb', alpha_n=1000, alpha_t=1000, mu=0.4 /\n"
                             "&slider mass=1, stiffness=1, normal_traction=1 /\n"
