@@ -26,7 +26,8 @@ MPIRUN = os.environ.get('MPIRUN', '')
 INPUTS = pathlib.Path(__file__).resolve().parents[2] / 'inputs'
 YEAR = 365 * 86400
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1',
-                   OMPI_MCA_rmaps_base_oversubscribe='1', OMPI_MCA_mpi_yield_when_idle='1')
+                   OMPI_MCA_rmaps_base_oversubscribe='1', OMPI_MCA_mpi_yield_when_idle='1',
+                   OMPI_MCA_hwloc_base_binding_policy='none')   # tests beside this one have the same first cores
 
 SMALL = """
 &fault geometry = 'antiplane_half', width = 40e3, nz = 64, shear_modulus = 32.04e9, wave_speed = 3464,
@@ -507,6 +508,16 @@ class Output(FaultTest):
             done = subprocess.run([PROGRAM, 'fault', name, '--quiet'], cwd=self.place, check=True, capture_output=True, text=True)
             self.assertNotIn('gnuplot', done.stderr)
             self.assertGreater((self.place / 'case_out' / 'case.png').stat().st_size, 5000)
+
+    @needs_gnuplot
+    def test_picture_is_in_years_and_kilometres_where_units_are_told(self):
+        for units, labels in (("length_unit = 'm', time_unit = 's', ", ('time [years]', 'depth [km]', 'slip [m]')),
+                              ('', ('time [T]', 'depth [L]', 'slip [L]'))):
+            name = self.write(SMALL.replace('1.0e10', '1.0e9').replace('stations', units + 'stations'))
+            subprocess.run([PROGRAM, 'fault', name, '--quiet'], cwd=self.place, check=True, capture_output=True)
+            picture = (self.place / 'case_out' / 'case.svg').read_text()
+            for label in labels:
+                self.assertIn(f'>{label}<', picture)
 
 
 class Laws(FaultTest):
