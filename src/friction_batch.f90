@@ -196,7 +196,7 @@ contains
         if (.not. dtime < most) this%plan%kind = lane_none
         if (this%plan%needs_time .and. .not. dtime > 1.0_wp / most) this%plan%kind = lane_none
         if (this%plan%damping > 0.0_wp .and. dtime > 0.0_wp) this%viscous = this%plan%damping &
-            / dtime
+            / max(dtime, 2.0_wp**(-1000) * this%plan%damping)   ! no overflow
         if (.not. this%viscous < most) this%plan%kind = lane_none
         this%plain = this%plan%kind == lane_subloading .and. rows == 1 .and. sizes%ndir == 3 &
             .and. this%plan%options == 0 .and. max(this%plan%cohesion, this%viscous) <= 0.0_wp

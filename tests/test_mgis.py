@@ -3,6 +3,8 @@
 
 STICKSLIP_LIBRARY, STICKSLIP_MGIS: the shared libraries.
 """
+import ctypes
+import ctypes.util
 import importlib.util
 import itertools
 import math
@@ -238,6 +240,17 @@ class Mgis(unittest.TestCase):
             self.assertEqual(result.forces, [0.0] * 4)
         quiet = behaviour('RateAndState', 'PlaneStrain').integrate([0, 0], [0, 0], properties('RateAndState'), [0.0] * 8, 0.0)
         self.assertEqual(quiet.code, 1)   # neither time nor motion
+
+    def test_what_is_no_number_raises_no_exception_in_the_host(self):
+        arithmetic, serious = ctypes.CDLL(ctypes.util.find_library('m')), 1   # FE_INVALID of x86 and ARM
+        layer, constants = behaviour('Coulomb', 'PlaneStrain', layer=True), properties('Coulomb', layer=True)
+        nan, infinite = float('nan'), float('inf')
+        cases = [({}, start, end) for start, end in itertools.product((nan, infinite, 0.0), (nan, infinite, 0.0)) if start or end]
+        cases += [({name: nan}, 0.0, 0.0) for name in ('Thickness', 'InPlaneModulus', 'Friction')]
+        for changed, start, end in cases:
+            arithmetic.feclearexcept(serious)
+            result = layer.integrate([0, start, 0, 0], [0, end, 0, 0], {**constants, **changed}, [0.0] * 8, 0.1)
+            self.assertEqual((result.code, arithmetic.fetestexcept(serious)), (-1, 0), (changed, start, end))
 
     def test_where_the_contact_can_snap_back_the_host_is_asked_for_a_smaller_step(self):
         weak = behaviour('Subloading', 'PlaneStrain')

@@ -9,7 +9,7 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     msname, npt, node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, &
     chrlngth, props, nprops)
     use friction_host, only : cut_factor, elastic_energy, error_text, forget_elastic, &
-        host_tangential, rotate_tangential, stdb_abqerr
+        host_tangential, rotate_tangential, stdb_abqerr, usable
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
         statev_size, statev_u_et
@@ -45,8 +45,10 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
         else
             if (nfdir == 2) call rotate_tangential(drot, state)
             ! a displacement without its stress: open since, although LM does not say so
-            if (all(abs(tau) <= 0.0_wp) .and. any(abs(state(statev_u_et:statev_u_et + 1)) &
-                > 0.0_wp)) call forget_elastic(props, state, status)
+            if (all(usable(tau)) .and. all(usable(state))) then
+                if (all(abs(tau) <= 0.0_wp) .and. any(abs(state(statev_u_et:statev_u_et + 1)) &
+                    > 0.0_wp)) call forget_elastic(props, state, status)
+            end if
             start = state
             call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
         end if

@@ -16,7 +16,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, &
     jstep, kinc)
     use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, &
-        stdb_abqerr
+        stdb_abqerr, usable
     use friction_kinds, only : wp
     use friction_layer, only : layer_update, perturb_layer
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
@@ -79,12 +79,14 @@ contains
     end function tilt
 
     !> The part of a rotation that is about the layer's normal. The rest comes of the shear, in
-    !> which the layer's plane does not turn.
+    !> which the layer's plane does not turn. What is no number stays none.
     pure function spin_in_plane(rotation) result(spin)
         real(wp), intent(in) :: rotation(3, 3)
         real(wp) :: spin(2, 2)
         real(wp) :: cosine, sine, length
 
+        spin = huge(spin)
+        if (.not. all(usable(rotation))) return
         cosine = rotation(1, 1) + rotation(2, 2)
         sine = rotation(2, 1) - rotation(1, 2)
         length = hypot(cosine, sine)

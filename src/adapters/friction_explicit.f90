@@ -9,8 +9,8 @@ module friction_explicit
     use friction_host, only : host_tangential, usable
     use friction_kinds, only : wp
     use friction_law_constants, only : positive
-    use friction_mod, only : friction_bad_increment, friction_ok, friction_zero_time_increment, &
-        statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_increment, friction_bad_state, friction_ok, &
+        friction_zero_time_increment, statev_size, statev_u_et, statev_u_n
     implicit none
     private
 
@@ -49,6 +49,8 @@ contains
         force = 0.0_wp
         if (.not. point%area > 0.0_wp) return
         n = point%ndir - 1
+        call check_numbers(point, statev, status)
+        if (status < 0) return
         host_axes = tangential_axes(point%ndir, point%along, point%normal)
         own_axes = tangential_axes(point%ndir, surface_axis(point%ndir, point%normal), point%normal)
         turn = matmul(transpose(own_axes), host_axes)
@@ -75,6 +77,26 @@ contains
             force(1) = min(max(force(1), -point%stick_force), 0.0_wp)
         end if
     end subroutine slide_in_contact
+
+    !> What is turned into the law's axes has to be numbers, and cosines at most 1 (in single
+    !> precision still): a host that traps exceptions is told, too.
+    pure subroutine check_numbers(point, statev, status)
+        type(explicit_point), intent(in) :: point
+        real(wp), intent(in) :: statev(statev_size)
+        integer, intent(out) :: status   !! ok, bad increment, or bad state
+        real(wp), parameter :: largest_cosine = 1.0_wp + 1.0e-6_wp
+        integer :: d
+
+        d = point%ndir
+        status = friction_bad_increment
+        if (.not. all(usable(point%slip(1:d - 1)))) return
+        if (.not. (all(usable(point%along(1:d))) .and. all(usable(point%normal(1:d))))) return
+        if (max(maxval(abs(point%along(1:d))), maxval(abs(point%normal(1:d)))) &
+            > largest_cosine) return
+        status = friction_bad_state
+        if (.not. all(usable(statev(statev_u_n:statev_u_n + 2)))) return
+        status = friction_ok
+    end subroutine check_numbers
 
     !> A point that is not in contact carries nothing and heals.
     pure subroutine rest_out_of_contact(dt, props, statev, status)

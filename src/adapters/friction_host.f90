@@ -63,7 +63,8 @@ contains
 
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, dtime, props, statev, &
             traction, tangent, status)
-        if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
+        if (status /= friction_zero_time_increment) return   ! what is no number is not compared
+        if (any(abs(du) > 0.0_wp)) return
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, instant, props, statev, &
             traction, tangent, status)
         if (status < 0) return
@@ -89,7 +90,8 @@ contains
         integer :: i
 
         call friction_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
-        if (status /= friction_zero_time_increment .or. any(abs(du) > 0.0_wp)) return
+        if (status /= friction_zero_time_increment) return   ! what is no number is not compared
+        if (any(abs(du) > 0.0_wp)) return
         call friction_tangential(du, pressure, instant, props, statev, tau, by_du, by_p, status)
         if (status < 0) return
         status = friction_ok   ! as above
@@ -100,7 +102,8 @@ contains
         end do
     end subroutine host_tangential
 
-    !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u.
+    !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u. What is
+    !> no number makes a state that the update refuses.
     pure subroutine rotate_tangential(drot, statev)
         real(wp), intent(in) :: drot(2, 2)       !! rotation of the axes in this increment [-]
         real(wp), intent(inout) :: statev(statev_size)   !! state at the start of the increment
@@ -108,6 +111,10 @@ contains
 
         u(1) = statev(statev_u_et)
         u(2) = statev(statev_u_et + 1)
+        if (.not. (all(usable(drot)) .and. all(usable(u)))) then
+            statev(statev_u_et) = huge(u)
+            return
+        end if
         statev(statev_u_et) = drot(1, 1) * u(1) + drot(1, 2) * u(2)
         statev(statev_u_et + 1) = drot(2, 1) * u(1) + drot(2, 2) * u(2)
     end subroutine rotate_tangential
@@ -178,13 +185,16 @@ contains
         real(wp), intent(inout) :: statev(statev_size)   !! state at the start of the increment
         integer, intent(out) :: status         !! of the friction routine
         real(wp) :: traction(2), tangent(2, 2)
+        logical :: virgin
 
         status = friction_ok
-        if (abs(statev(statev_status)) > 0.0_wp) then
-            statev(statev_u_n) = u_n
-        else
+        virgin = usable(statev(statev_status))   ! the update refuses what is no number
+        if (virgin) virgin = .not. abs(statev(statev_status)) > 0.0_wp
+        if (virgin) then
             call host_update(2, [u_n, 0.0_wp], 0.0_wp, size(props), props, statev, traction, &
                 tangent, status)
+        else
+            statev(statev_u_n) = u_n
         end if
     end subroutine place_point
 

@@ -85,6 +85,7 @@ contains
         status = friction_bad_increment
         if (.not. usable_in_plane(at, ndi + nshr, layer%modulus, dstran, stress)) return
         do i = 1, at%n
+            if (.not. usable(dstran(at%place(i)))) return
             du(i) = layer%thickness * dstran(at%place(i))
         end do
         call host_update(at%n, du, dtime, nprops - first_friction_prop + 1, &

@@ -62,6 +62,12 @@ static int fail(const behaviour_data *data, int status)
     return failed;
 }
 
+/* A number in range? Compared so that a NaN raises no exception in the host. */
+static int is_usable(double x)
+{
+    return isless(fabs(x), largest);
+}
+
 /* Gap or strain to displacement, traction to stress: 1 for a normal component of a layer and for all of a zone. */
 static double factor(const geometry *form, int i)
 {
@@ -187,19 +193,23 @@ static int integrate(behaviour_data *data, int law, int own, const geometry *for
         thickness = properties[0];
         modulus = properties[1];
         properties += 2;
-        if (!(thickness >= least && thickness < largest && (modulus == 0 || modulus >= least) && modulus < largest))
+        if (!(isgreaterequal(thickness, least) && isless(thickness, largest)
+              && (modulus == 0 || isgreaterequal(modulus, least)) && isless(modulus, largest)))
             return fail(data, FRICTION_BAD_PROPERTY);
     }
-    for (i = 0; form->layer && asked.integrate && i < form->size; i++)
-        if (!(fabs(data->s1.gradients[i]) < largest && modulus * fabs(data->s1.gradients[i]) < largest))
+    for (i = 0; asked.integrate && i < form->size; i++)
+        if (!(is_usable(data->s1.gradients[i]) && is_usable(modulus * data->s1.gradients[i])))
             return fail(data, FRICTION_BAD_INCREMENT);
     props[0] = law;
     memcpy(props + 1, properties, (size_t)(own + 2) * sizeof *props);
     memcpy(statev, data->s0.internal_state_variables, sizeof statev);
-    for (i = 0; i < form->contact; i++)
-        du[i] = asked.integrate ? thickness * factor(form, i)
-                                      * (data->s1.gradients[form->place[i]] - data->s0.gradients[form->place[i]])
-                                : 0;
+    for (i = 0; i < form->contact; i++) {
+        const double *start = &data->s0.gradients[form->place[i]], *end = &data->s1.gradients[form->place[i]];
+
+        if (asked.integrate && !is_usable(*start))
+            return fail(data, FRICTION_BAD_INCREMENT);
+        du[i] = asked.integrate ? thickness * factor(form, i) * (*end - *start) : 0;
+    }
     status = update(du, asked.integrate ? data->dt : 0, form, own + 3, props, statev, traction, tangent);
     if (status < 0)
         return fail(data, status);

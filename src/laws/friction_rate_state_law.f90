@@ -632,7 +632,8 @@ contains
         logical :: may
         real(wp), parameter :: least_share = 1.0e-100_wp
         type(slip_range) :: range
-        real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall, ln_ratio
+        real(wp) :: e_low, e_high, t, k, b_over_a, pressed, x_0, low, high, fall, ln_ratio, &
+            aged
         integer :: i
 
         call evolution_bounds(self, between_slips(self, least_slip * self%d_c, trial / stiffness, &
@@ -646,6 +647,7 @@ contains
         pressed = 0.0_wp
         if (self%alpha > 0.0_wp) pressed = pressing(self, pressure)
         ln_ratio = log(dt) - log(theta_n)
+        aged = theta_n / max(dt, 2.0_wp**(-1000) * theta_n)   ! a number for the shortest dt, too
         if (self%evolution == shifted) then
             may = may_turn_anywhere(self, t, k, dt, theta_n)
             return
@@ -656,13 +658,13 @@ contains
             range = ranges(i)
             if (self%evolution == ageing) then
                 if (self%alpha > 0.0_wp) range = pressed_range(range, pressed)
-                fall = aged_fall(range, theta_n / dt)
+                fall = aged_fall(range, aged)
             else
                 fall = slipped_fall(range, ln_ratio - range%ln_to, -1.0_wp, pressed)
             end if
             if (may_turn(range, k, b_over_a * fall) <= 0.0_wp) cycle
             if (self%evolution == ageing) then
-                call aged_bounds(range, theta_n / dt, low, high)
+                call aged_bounds(range, aged, low, high)
             else
                 call slipped_bounds(range, ln_ratio - range%ln_to, ln_ratio - range%ln_from, &
                     pressed, low, high)
@@ -670,8 +672,8 @@ contains
             may = may_vanish(range, t, k, x_0 + b_over_a * low, x_0 + b_over_a * high) > 0.0_wp
             if (may) return
         end do
-        may = k * ranges(size(ranges))%to < t .and. may_turn_far(k, b_over_a, theta_n / dt, &
-            pressed) > 0.0_wp
+        may = k * ranges(size(ranges))%to < t .and. may_turn_far(k, b_over_a, aged, pressed) &
+            > 0.0_wp
     end function may_balance_more_than_once
 
     !> The same with a steady state of its own, whose bounds cost more: over wide ranges, and over
