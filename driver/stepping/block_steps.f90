@@ -62,6 +62,8 @@ contains
             scales(:, 2) = self%natural
             scales(elastic, 2) = self%natural(elastic) * self%pressed
             associate (block => self%block)
+                if (block%equations%slides_damped()) scales(velocity, 2) = min(scales(velocity, &
+                    2), self%natural(elastic) * block%equations%alpha / block%equations%damper)
                 call rosenbrock_step(block%equations, t, tried%h, block%y, block%first, scales, &
                     tried%y, tried%error, growth)
                 tried%stiffness = tried%h * growth
@@ -94,8 +96,8 @@ contains
         real(dp) :: way, change   ! of the block, of the contact's elastic displacement [L]
 
         associate (eq => self%block%equations, y => self%block%y)
-            yes = eq%phase == phase_slide .and. eq%mass > 0.0_dp .and. .not. (eq%damper > 0.0_dp &
-                .or. eq%surface%traits%onset == onset_gradual) .and. tried%last(slip) >= 0.0_dp
+            yes = eq%phase == phase_slide .and. eq%mass > 0.0_dp .and. eq%surface%traits%onset &
+                /= onset_gradual .and. tried%last(slip) >= 0.0_dp
             if (.not. yes) return
             way = self%drive%position(t + tried%h) - self%drive%position(t) - (tried%y(extension) &
                 - y(extension))

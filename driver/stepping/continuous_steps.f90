@@ -15,7 +15,7 @@ module continuous_steps
     use phase_changes, only : change_phase, follow_velocity, lifts, phase_at_rest, settle
     use run_settings, only : settings
     use slider_rates, only : away, damped, drive_work, elastic, extension, memory, phase_open, &
-        phase_stick, place, slip, slider_equations, velocity
+        phase_slide, phase_stick, place, slip, slider_equations, velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -423,6 +423,11 @@ contains
             ! how fast friction falls is decided by velocities that are a small part of an event's
             if (eq%falling < self%natural(velocity)) self%weights(velocity) = 1.0_dp / (self%rtol &
                 * max(eq%falling, abs(y(velocity))))
+            ! beside a damper the velocity tells the traction, unless the contact slides
+            if (eq%slides_damped() .and. (eq%phase == phase_stick .or. eq%phase == phase_slide &
+                .and. eq%surface%traits%stiff)) self%weights(velocity) = max( &
+                self%weights(velocity), 1.0_dp / (self%rtol * max(self%natural(elastic) * eq%alpha &
+                / eq%damper, abs(y(velocity)))))
             ! friction that has weakened for good does not ask how far it slips
             self%weights(memory) = merge(0.0_dp, 1.0_dp / (self%rtol * self%natural(memory)), &
                 y(memory) > eq%surface%traits%kink .and. .not. self%heals)

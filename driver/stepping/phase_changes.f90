@@ -50,8 +50,12 @@ contains
             * (eq%open_below - eq%pressed_to(y))
         if (.not. eq%damper > 0.0_dp) then
             call spring_switches(eq, t, y, dy, g)
-        else if (eq%follows_share() .and. eq%phase /= phase_open) then
+        else if (eq%phase == phase_open) then
+            return
+        else if (eq%follows_share()) then
             g(1) = share_switch(eq, t, y)
+        else if (eq%slides_damped()) then
+            call damper_switches(eq, t, y, g)
         end if
     end subroutine switch_values
 
@@ -133,6 +137,42 @@ contains
                 pressure)) - balance%push
         end if
     end function share_switch
+
+    !> The first two switch values of other surfaces beside a damper, on a block with a mass.
+    pure subroutine damper_switches(eq, t, y, g)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: t   !! [T]
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(inout) :: g(switches)
+        real(dp), parameter :: just_below = 1.0_dp - 1.0e-12_dp   !! or round-off would call it back
+        type(contact_motion) :: contact
+        type(damper_balance) :: balance
+        real(dp) :: v_drive, pressure, pressure_rate, pull, resistance, by_rate
+        logical :: failed
+
+        if (eq%surface%traits%onset == onset_gradual .and. .not. eq%surface%tau_max &
+            < huge(pull)) return
+        call eq%inputs(t, y, v_drive, pressure, pressure_rate)
+        pull = eq%pull(y)
+        associate (cap => eq%surface%tau_max)
+            if (eq%surface%traits%onset == onset_gradual) then
+                call eq%damped_contact(y, pull, v_drive, pressure, pressure_rate, contact, failed)
+                g(2) = abs(contact%traction) - cap
+                if (eq%phase == phase_slide) return
+                call eq%surface%resistance_at(eq%law_state_of(y, pressure), max(0.0_dp, &
+                    contact%slip), pressure, resistance, by_rate)
+                g(2) = just_below * cap - resistance
+                return
+            end if
+            balance = eq%balance_at(y, pull)
+            resistance = min(cap, eq%strength(y, pressure))
+            if (eq%phase == phase_stick) then
+                g(1) = balance%push - resistance
+            else
+                g(1) = just_below * resistance - eq%sense * balance%sense * balance%push
+            end if
+        end associate
+    end subroutine damper_switches
 
     !> Where a switch value first becomes positive on the cubic through the ends of a step, part of
     !> the step.
@@ -263,7 +303,7 @@ contains
         integer :: phase
 
         phase = merge(phase_slide, phase_stick, eq%surface%traits%onset == onset_gradual &
-            .or. eq%damper > 0.0_dp)
+            .or. eq%damper > 0.0_dp .and. .not. eq%slides_damped())
     end function phase_at_rest
 
     !> Enters the next phase.
@@ -283,10 +323,13 @@ contains
             end if
             call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
             if (eq%damper > 0.0_dp) then
-                if (eq%phase == phase_slide) then
-                    eq%phase = phase_stick
-                else
+                if (eq%phase /= phase_slide) then
                     call slide_on(block, pressure)
+                else if (which == 2) then
+                    call slide_on(block, pressure)
+                    eq%phase = phase_capped
+                else
+                    eq%phase = phase_stick
                 end if
                 return
             end if
@@ -325,15 +368,21 @@ contains
         end associate
     end subroutine change_phase
 
-    !> A subloading surface beside a damper keeps its R when the pressure jumps, unless it sticks.
+    !> A surface beside a damper slides from now on. A subloading one keeps its R when the pressure
+    !> jumps, unless it sticks.
     pure subroutine slide_on(block, pressure)
         type(moving_block), intent(inout) :: block
         real(dp), intent(in) :: pressure   !! before the jump, or now [F/L^2]
         type(law_state) :: state
+        type(damper_balance) :: balance
 
-        state = block%equations%law_state_of(block%y, pressure)
-        block%y(ratio) = state%r
-        block%equations%phase = phase_slide
+        associate (eq => block%equations)
+            state = eq%law_state_of(block%y, pressure)
+            if (eq%follows_share()) block%y(ratio) = state%r
+            balance = eq%balance_at(block%y, eq%pull(block%y))
+            eq%sense = balance%sense
+            eq%phase = phase_slide
+        end associate
         block%known = .false.
     end subroutine slide_on
 

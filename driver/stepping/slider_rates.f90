@@ -40,8 +40,8 @@ module slider_rates
         real(dp) :: mass = 0.0_dp, stiffness = 0.0_dp, damping = 0.0_dp   !! as of `slider`
         real(dp) :: area = 0.0_dp
         real(dp) :: alpha = 0.0_dp       !! tangential stiffness of the contact [F/L^3]
-        real(dp) :: damper = 0.0_dp      !! beside that [F T/L^3]; with it, all but a subloading
-                                         !! surface slides, if only at a slip rate of zero
+        real(dp) :: damper = 0.0_dp      !! beside that [F T/L^3]; with it and without mass, all but
+                                         !! a subloading surface slides, if only at a rate of zero
         real(dp) :: least_share = 0.0_dp !! R beside a damper grows as from here at least: its rate
                                          !! at 0 has no bound, its way from there is short [-]
         logical :: rigid = .false.       !! the contact has no spring
@@ -71,7 +71,7 @@ module slider_rates
         procedure :: enter, rates, find_velocity, law_state_of, strength, full_strength, &
             traction, inputs, pull, slip_tendency, creeps_along, follows_traction, sense_of, &
             follows_share, runs_away, damped_contact, balance_at, pressed_to, find_least_share, &
-            share_rate, springs_alone, keeps_velocity
+            share_rate, springs_alone, keeps_velocity, slides_damped
     end type slider_equations
 
     !> What a contact does to the block. Those that find it fill in what is not zero.
@@ -388,10 +388,14 @@ contains
             if (self%phase /= phase_stick) contact%slip = (balance%push &
                 - min(self%surface%tau_max, state%r * full_strength(self, y, pressure))) &
                 / balance%drag
+        else if (self%slides_damped()) then
+            if (self%phase /= phase_stick) call slide_beside_damper(self, state, pressure, &
+                balance, contact%slip, failed)
         else
-            call slip_of(self%surface, state, pressure, balance, contact%slip, failed)
-            if (failed) return
+            call slip_of(self%surface, state, pressure, balance, self%surface%tau_max, &
+                contact%slip, failed)
         end if
+        if (failed) return
         contact%traction = balance%sense * (balance%push - balance%drag * contact%slip)
         contact%elastic = (contact%traction - self%alpha * y(elastic)) / self%damper
         contact%velocity = contact%elastic + balance%sense * contact%slip
@@ -418,6 +422,43 @@ contains
             contact%ratio = -changes%r
         end if
     end subroutine damped_contact
+
+    !> Slip rate beside a damper in a phase of sliding; below 0, a surface with a yield point is
+    !> about to stick.
+    pure subroutine slide_beside_damper(self, state, pressure, balance, rate, failed)
+        class(slider_equations), intent(in) :: self
+        type(law_state), intent(in) :: state
+        real(dp), intent(in) :: pressure
+        type(damper_balance), intent(inout) :: balance   !! in the sense of the phase, afterwards
+        real(dp), intent(out) :: rate       !! [L/T]
+        logical, intent(out) :: failed      !! there is none
+        real(dp) :: resistance, by_rate
+
+        if (self%surface%traits%onset == onset_gradual .and. self%phase == phase_slide) then
+            call slip_of(self%surface, state, pressure, balance, huge(rate), rate, failed)
+            return
+        end if
+        failed = .false.
+        balance%push = self%sense * balance%sense * balance%push
+        balance%sense = self%sense
+        resistance = self%surface%tau_max
+        if (self%phase == phase_slide) then
+            call slip_of(self%surface, state, pressure, balance, resistance, rate, failed)
+            if (failed .or. rate > 0.0_dp) return
+            call self%surface%resistance_at(state, 0.0_dp, pressure, resistance, by_rate)
+        end if
+        rate = (balance%push - min(resistance, self%surface%tau_max)) / balance%drag
+    end subroutine slide_beside_damper
+
+    !> Is it a contact with a damper on a block with a mass, but for a subloading surface? Then it
+    !> sticks and slides in phases, or creeps and slides at its cap: slip rates have kinks between
+    !> these, sharp ones beside a stiff damper.
+    pure function slides_damped(self) result(yes)
+        class(slider_equations), intent(in) :: self
+        logical :: yes
+
+        yes = self%damper > 0.0_dp .and. self%mass > 0.0_dp .and. .not. self%follows_share()
+    end function slides_damped
 
     !> Is it a subloading surface beside a damper? Then R follows the traction while that falls:
     !> the surface sticks. When it grows, the surface slides.
@@ -519,7 +560,8 @@ contains
         if (self%mass > 0.0_dp) return
         push = self%sense * self%stiffness * y(extension) / self%area
         call slip_of(self%surface, law_state_of(self, y, pressure), pressure, &
-            damper_balance(self%sense, push, self%damping / self%area), v, failed)
+            damper_balance(self%sense, push, self%damping / self%area), self%surface%tau_max, v, &
+            failed)
         if (.not. (failed .or. v > 0.0_dp)) then   ! pushed back: where slip ends is seen by that
             v = (push - min(strength(self, y, pressure), self%surface%tau_max)) * self%area &
                 / self%damping
@@ -584,7 +626,8 @@ contains
             if (.not. self%mass > 0.0_dp) then
                 if (self%surface%traits%onset == onset_gradual) sense = self%sense_of(pull)
                 call slip_of(self%surface, state, pressure, damper_balance(sense, sense * pull &
-                    / self%area, self%damping / self%area), contact%slip, failed)
+                    / self%area, self%damping / self%area), self%surface%tau_max, contact%slip, &
+                    failed)
                 if (failed) return
                 contact%velocity = sense * contact%slip
             end if

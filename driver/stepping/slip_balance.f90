@@ -17,12 +17,13 @@ module slip_balance
 
 contains
 
-    !> The least slip rate at which `push - drag v` is what the law, or its cap, resists with.
-    pure subroutine slip_of(surface, state, pressure, balance, v, failed)
+    !> The least slip rate at which `push - drag v` is what the law, or a cap, resists with.
+    pure subroutine slip_of(surface, state, pressure, balance, cap, v, failed)
         type(sliding_surface), intent(in) :: surface
         type(law_state), intent(in) :: state
         real(dp), intent(in) :: pressure
         type(damper_balance), intent(in) :: balance
+        real(dp), intent(in) :: cap       !! [F/L^2]
         real(dp), intent(out) :: v        !! [L/T]
         logical, intent(out) :: failed    !! there is none
         integer, parameter :: most_iterations = 100
@@ -33,14 +34,14 @@ contains
         failed = .false.
         v = 0.0_dp
         call surface%resistance_at(state, 0.0_dp, pressure, resistance, by_rate)
-        if (balance%push <= min(resistance, surface%tau_max)) return
-        if (balance%push > surface%tau_max) then
+        if (balance%push <= min(resistance, cap)) return
+        if (balance%push > cap) then
             failed = .not. balance%drag > 0.0_dp
             if (failed) return
-            capped = (balance%push - surface%tau_max) / balance%drag
+            capped = (balance%push - cap) / balance%drag
             call surface%resistance_at(state, capped, pressure, resistance, by_rate)
             v = capped
-            if (resistance >= surface%tau_max) return
+            if (resistance >= cap) return
             v = 0.0_dp
         end if
         if (surface%traits%stiff) then

@@ -63,6 +63,46 @@ class Damper(Program):
                 errors = [abs(fixed[time] - exact[time]) for time in fixed.keys() & exact.keys()]
                 self.assertLess(sum(errors) / len(errors), 0.01)
 
+    def slow(self, friction, damper, speed):
+        """A slow drive beside a stiff damper, in few steps: a run that does not get on fills its table."""
+        result = self.run_text(f"""&friction {friction}, alpha_n=1000, alpha_t=1000, eta_t={damper} /
+            &slider mass=1e-3, stiffness=1, damping=0.02, normal_traction=10 /
+            &drive velocity={speed} /
+            &time t_end={8 / speed}, rtol=1e-5 /
+            &output table_limit=1e-3 /""", '--no-plot')
+        self.assert_done(result)
+        rows = self.rows('case_out/case.csv')
+        self.assertLess(len(rows), 200)
+        return [(float(row['time']), float(row['spring_force'])) for row in rows]
+
+    def test_a_slow_drive_over_a_stiff_damper_keeps_its_closed_form(self):
+        spring, contact, strength = 1.0, 1000.0, 4.0
+        for speed, damper in ((1e-6, 1e8), (1e-2, 1e3)):
+            late = damper / (spring + contact)
+            for time, force in self.slow(SLIDING['coulomb'], damper, speed):   # without inertia
+                elastic = speed * spring / (spring + contact) * (time - late + late * math.exp(-time / late))
+                carried = min(spring * (speed * time - elastic), strength)
+                self.assertAlmostEqual(force, carried, delta=1e-5 * strength + 0.04 * speed)
+
+    def test_so_does_creep_that_comes_to_a_shear_cap(self):
+        for b in (0.005, 0.03):
+            rows = self.slow(f"law='rate_and_state', a=0.01, b={b}, d_c=0.01, v0=1e-6, f0=0.4, tau_max=3.9", 1e8, 1e-6)
+            self.assertAlmostEqual(rows[-1][1], 3.9, delta=1e-6)
+
+    def test_creep_beside_a_stiff_damper_keeps_rtol(self):
+        forces = []
+        for tolerance in (1e-5, 1e-8):
+            result = self.run_text(f"""&friction law='rate_and_state', a=0.01, b=0.015, d_c=0.01, v0=0.01, f0=0.4,
+                    alpha_n=1000, alpha_t=1000, eta_t=1e4 /
+                &slider mass=1e-3, stiffness=1, damping=0.02, normal_traction=10 /
+                &drive velocity=0.01, -0.01, duration=600, 700 /
+                &time t_end=1300, rtol={tolerance} /
+                &output every=13 /""", '--no-plot')
+            self.assert_done(result)
+            forces.append([float(row['friction_force']) for row in self.rows('case_out/case.csv')])
+        self.assertEqual(len(forces[0]), 101)
+        self.assertLess(worst_of(abs(a - b) for a, b in zip(*forces, strict=True)), 5 * 1e-5 * 4)
+
     def test_a_block_that_sticks_rings_down_as_a_damped_oscillator(self):
         mass, spring, contact, damping, v0 = 1e-3, 1.0, 1000.0, 0.1, 0.1
         result = self.run_text(f"""&friction law='coulomb', alpha_n=1000, alpha_t={contact}, mu=0.4, eta_t={damping} /
