@@ -206,6 +206,16 @@ class Mgis(unittest.TestCase):
         result = zone.integrate([1.0, 0, 0], [1.0, 0, 0], properties('Coulomb'), open_point, 0.1, asked=-3.0)
         self.assertEqual(result.tangent, [[0.0] * 3] * 3)
 
+    def test_bodies_that_just_touch_are_held_by_the_springs(self):
+        zone, springs = behaviour('Coulomb', 'PlaneStrain'), [[1000, 0], [0, 800]]
+        at_rest = zone.integrate([0, 0], [0, 0], properties('Coulomb'), [0.0] * 8, 0.1)
+        self.assertEqual((at_rest.forces, at_rest.tangent), ([0, 0], springs))
+        for asked in (4.0, -3.0):   # in the increment after that, too
+            again = zone.integrate([0, 0], [0, 0], properties('Coulomb'), at_rest.state, 0.1, asked=asked)
+            self.assertEqual(again.tangent, springs)
+        slid = zone.integrate([0, 0], [0, 1e-3], properties('Coulomb'), at_rest.state, 0.1)
+        self.assertEqual(slid.tangent, [[0, 0], [0, 0]])
+
     def test_operators_and_speed_of_sound_as_asked_for(self):
         zone, sliding = behaviour('Coulomb', 'PlaneStrain'), [-1e-3, 1.0]
         for asked, expected in ((0.0, [0, 0]), (1.0, [0, 800]), (2.0, [0, 800]), (3.0, [-400, 0]), (4.0, [-400, 0])):

@@ -11,7 +11,7 @@
 !> the contact. Stress and stiffness follow from the power T.d' (work on an area, thickness h):
 !> S = G^T T, dS/dE = G^T (h dT/du) G + T.d'', where G = d(d)/dE.
 module friction_finite_layer
-    use friction_host, only : host_update
+    use friction_host, only : hold_touching, host_update
     use friction_kinds, only : wp
     use friction_layer, only : first_friction_prop, layer_constants, read_layer
     use friction_mod, only : friction_bad_increment, statev_size
@@ -60,6 +60,7 @@ contains
         call host_update(3, du, dtime, nprops - first_friction_prop + 1, &
             props(first_friction_prop), statev, traction, tangent, status)
         if (status < 0) return
+        call hold_touching(3, du, props(first_friction_prop), statev, tangent)
         tangent(2:3, 1) = 0.0_wp
         tangent = layer%thickness * tangent
         call put_stress(new, layer%modulus, stran + dstran, traction, stress)

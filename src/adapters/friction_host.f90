@@ -1,6 +1,7 @@
 !> What several adapters need between a host and `friction_mod`. No physics.
 module friction_host
     use, intrinsic :: iso_fortran_env, only : int64
+    use friction_contact, only : point_open
     use friction_kinds, only : wp
     use friction_mod, only : array_sizes, friction_bad_increment, friction_message, &
         friction_no_convergence, friction_ok, friction_snap_back, friction_tangential, &
@@ -10,7 +11,8 @@ module friction_host
     private
 
     public :: append, append_number, cut_factor, elastic_energy, error_text, forget_elastic, &
-        host_tangential, host_update, interface_update, rotate_tangential, usable, used_length
+        hold_touching, host_tangential, host_update, interface_update, rotate_tangential, usable, &
+        used_length
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
@@ -59,7 +61,6 @@ contains
         real(wp), intent(inout) :: traction(ndir)       !! [F/L^2]
         real(wp), intent(inout) :: tangent(ndir, ndir)  !! [F/L^3]
         integer, intent(out) :: status
-        integer :: i
 
         call update_arrays(array_sizes(1, ndir, nprops, statev_size), du, dtime, props, statev, &
             traction, tangent, status)
@@ -69,11 +70,7 @@ contains
             traction, tangent, status)
         if (status < 0) return
         status = friction_ok   ! where nothing moves, no other equilibrium is within reach
-        tangent = 0.0_wp
-        tangent(1, 1) = props(prop_alpha_n)
-        do i = 2, ndir
-            tangent(i, i) = props(prop_alpha_t)
-        end do
+        call put_springs(ndir, props, tangent)
     end subroutine host_update
 
     !> The same of `friction_tangential`.
@@ -101,6 +98,34 @@ contains
             by_du(i, i) = props(prop_alpha_t)
         end do
     end subroutine host_tangential
+
+    !> Elements join two bodies from the start, and may be all that holds one of them. Where they
+    !> just touch, and nothing moves yet, their stiffness is that of the springs: with that of a
+    !> gap, which is none, a host could not press them by a force.
+    pure subroutine hold_touching(ndir, du, props, statev, tangent)
+        integer, intent(in) :: ndir                       !! as in `host_update`, after which it is
+                                                          !! called, and so on
+        real(wp), intent(in) :: du(ndir)
+        real(wp), intent(in) :: props(prop_alpha_t)
+        real(wp), intent(in) :: statev(statev_size)       !! at the end of the increment
+        real(wp), intent(inout) :: tangent(ndir, ndir)
+
+        if (nint(statev(statev_status)) == point_open .and. all(abs(du) <= 0.0_wp) &
+            .and. abs(statev(statev_u_n)) <= 0.0_wp) call put_springs(ndir, props, tangent)
+    end subroutine hold_touching
+
+    pure subroutine put_springs(ndir, props, tangent)
+        integer, intent(in) :: ndir
+        real(wp), intent(in) :: props(prop_alpha_t)       !! constants of the friction routine
+        real(wp), intent(inout) :: tangent(ndir, ndir)    !! out [F/L^3]
+        integer :: i
+
+        tangent = 0.0_wp
+        tangent(1, 1) = props(prop_alpha_n)
+        do i = 2, ndir
+            tangent(i, i) = props(prop_alpha_t)
+        end do
+    end subroutine put_springs
 
     !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u. What is
     !> no number makes a state that the update refuses.

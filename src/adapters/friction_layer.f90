@@ -2,7 +2,7 @@
 !> UMATs of Abaqus and CalculiX share. Nothing here is allocated: components are gathered one by
 !> one.
 module friction_layer
-    use friction_host, only : elastic_energy, host_update, usable
+    use friction_host, only : elastic_energy, hold_touching, host_update, usable
     use friction_kinds, only : wp
     use friction_law_constants, only : positive
     use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_size, &
@@ -91,6 +91,7 @@ contains
         call host_update(at%n, du, dtime, nprops - first_friction_prop + 1, &
             props(first_friction_prop), statev, traction, tangent, status)
         if (status < 0) return
+        call hold_touching(at%n, du, props(first_friction_prop), statev, tangent)
         call extend_in_plane(at, ndi + nshr, layer%modulus, dstran, stress, ddsdde, sse)
         do j = 1, at%n
             stress(at%place(j)) = traction(j)

@@ -10,7 +10,7 @@
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use friction_host, only : error_text, host_update
+    use friction_host, only : error_text, hold_touching, host_update
     use friction_host_end, only : end_host, to_errors
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, statev_size
@@ -40,6 +40,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     end if
     ! this host has no way to cut the step or to be told of an error
     if (status < 0) call end_host(error_text('Kratos UMAT', status), to_errors, 1)
+    call hold_touching(3, du, props, statev, tangent)
     stress = 0.0_wp
     ddsdde = 0.0_wp
     do j = 1, 3

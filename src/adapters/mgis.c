@@ -163,6 +163,19 @@ static void put_results(const behaviour_data *data, const geometry *form, double
         *end->dissipated_energy = statev[7] / thickness;
 }
 
+/* Neither a gap nor a pressure, and nothing moves yet. The stiffness then is that of the springs: with that of a gap,
+ * which is none, a host could not press two bodies by a force. */
+static int just_touches(const geometry *form, const double *du, const double *statev)
+{
+    const double point_open = 3;
+    int i;
+
+    for (i = 0; i < form->contact; i++)
+        if (du[i] != 0)
+            return 0;
+    return statev[0] == point_open && statev[1] == 0;
+}
+
 /* What the host asks for, in K[0]. */
 typedef struct {
     int integrate, operator_wanted, elastic, sound;
@@ -213,8 +226,7 @@ static int integrate(behaviour_data *data, int law, int own, const geometry *for
     status = update(du, asked.integrate ? data->dt : 0, form, own + 3, props, statev, traction, tangent);
     if (status < 0)
         return fail(data, status);
-    /* A virgin point predicts as if it were closed: its tangent is that of surfaces that just touch. */
-    if (asked.elastic || (!asked.integrate && data->s0.internal_state_variables[0] == 0))
+    if (asked.elastic || just_touches(form, du, statev))
         elastic_tangent(form, props, tangent);
     if (asked.operator_wanted)
         put_operator(form, thickness, modulus, tangent, data->K);

@@ -4,6 +4,7 @@ STICKSLIP_LIBRARY, STICKSLIP_CALCULIX: the shared libraries; STICKSLIP: the prog
 for external behaviours. A picture of the slider, laid beside the program's own curve, is left where the test runs.
 """
 import csv
+import itertools
 import os
 import pathlib
 import re
@@ -171,6 +172,15 @@ class CalculiX(unittest.TestCase):
                 count += 1
         return worst / pressure, slips / count
 
+    def test_a_force_presses_bodies_that_just_touch(self):
+        for option, idle in itertools.product(('', ', NLGEOM'), (False, True)):
+            step = f'*STEP{option}\n*STATIC\n0.5, 1.\n*CLOAD\nTOP, 3, {{}}\n{layer_deck.PRINT}*END STEP\n'
+            steps = (step.format(0.0) if idle else '') + step.format(-100.0)   # at four nodes of 20 mm by 20 mm
+            tables = run_text(layer_deck.deck(1, LAYER, material(friction_point.LAWS['subloading']), steps), self.folder, 'pressed')
+            stresses = [rows[4] for rows in tables[-3][2]]
+            self.assertLess(worst_of(abs(stress + 1) for stress in stresses), 1e-3, (option, idle))
+            self.assertLessEqual(max(iterations(self.folder, 'pressed')), 4)
+
     def test_a_long_slip_under_nlgeom_keeps_its_pressure(self):
         """0.05 mm over layers of 0.1 and of 1 mm: the forces of small displacements, to what else NLGEOM changes."""
         for thickness in (0.1, 1.0):
@@ -221,6 +231,12 @@ class CalculiX(unittest.TestCase):
                 counts = iterations(self.folder, 'pressed')
                 print(f'\n  orthotropic Coulomb friction, {name}: {len(counts)} increments, iterations at most {max(counts)}')
                 self.assertEqual(len(counts), 10)   # none was cut
+
+    def test_a_first_pressing_converges_in_which_most_of_the_surface_slips(self):
+        for mu in (0.25, 0.28, 0.3):
+            deck = layer_deck.deck(4, LAYER, material([2, 1000, 800, mu]), layer_deck.PRESSED)
+            self.assertTrue(run_text(deck, self.folder, 'pressed'))   # it ended as it should
+            print(f'\n  Coulomb friction, {mu}, pressed: {iterations(self.folder, "pressed")} iterations')
 
     def test_slider_sticks_and_slips_like_the_program(self):
         tables = run_deck('slider', self.folder, [1, 1000, 1000, 0.4, 0.2, 10, 10, 1000])

@@ -112,6 +112,35 @@ class Blocks(unittest.TestCase):
                 self.assertLess(worst, 1e-6)
                 self.assertLessEqual(max(counts), 4)
 
+    def test_a_force_presses_bodies_that_just_touch(self):
+        import KratosMultiphysics as kratos
+        import KratosMultiphysics.StructuralMechanicsApplication   # noqa: F401 (knows POINT_LOAD)
+        import two_blocks
+        load = kratos.KratosGlobals.GetVariable('POINT_LOAD')
+
+        class Loaded(two_blocks.TwoBlocks):
+            def make_mesh(self):
+                self.part.AddNodalSolutionStepVariable(load)
+                super().make_mesh()
+
+            def fix(self):
+                super().fix()
+                for k, node in enumerate(self.layers[3]):
+                    node.Free(kratos.DISPLACEMENT_Y if self.dimension == 2 else kratos.DISPLACEMENT_Z)
+                    self.part.CreateNewCondition(f'UPwForceCondition{self.dimension}D1N', k + 1, [node.Id],
+                                                 self.part.CreateNewProperties(k + 3))
+
+        for dimension in (2, 3):
+            blocks = Loaded(os.environ['STICKSLIP_KRATOS'], dimension)
+            for force in (0.0, 1.0, 2.0):
+                vector = [0.0, 0.0, 0.0]
+                vector[dimension - 1] = -force / len(blocks.layers[3])
+                for node in blocks.layers[3]:
+                    node.SetSolutionStepValue(load, 0, vector)
+                blocks.step([0.0] * dimension)
+                for gap in blocks.gaps():
+                    self.assertAlmostEqual(gap[-1], -force / friction_point.LAWS['subloading'][1], delta=1e-12)
+
     def test_the_example_s_own_constants_are_these(self):
         import two_blocks
         self.assertEqual(two_blocks.FRICTION, friction_point.LAWS['subloading'])
