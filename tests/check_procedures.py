@@ -1,12 +1,18 @@
 #!/usr/bin/env python3
-"""Procedures: none is longer than a screen, none takes more arguments than one can keep in mind.
+"""Procedures: none is longer than a screen, none takes more arguments than one can keep in mind, and gfortran bears them.
 
     tests/check_procedures.py [ROOT]
 
 Looks at all Fortran below src, driver, tests, bench, examples and cmake. A procedure has at most 60 lines, those of
 the procedures inside it with them, and eight arguments, the object that it belongs to (`self`) not counted.
-EXCEPTIONS names those that may have more, with the reason; one that is not needed is a fault, too. Exit status
-1 with a line for each fault.
+EXCEPTIONS names those that may have more, with the reason; one that is not needed is a fault, too.
+
+No result and no argument of a procedure of a type has bounds or a length that call a function: an `allocatable` result,
+or `(:)`. Each module that uses such a type writes the call into its module file. If the function (`size`, say) is not known
+there, gfortran 12 enters its name into the table of names that it is just walking through, passes others over, and breaks
+down now and then: what is added to quite another module decides it.
+
+Exit status 1 with a line for each fault.
 """
 import pathlib
 import re
@@ -135,13 +141,60 @@ def procedures(text):
             stack.append([found.group(3), lines, len(arguments) - (arguments[:1] == ['self'])])
 
 
+def apart(text):
+    """What commas outside of parentheses part."""
+    depth, parts = 0, ['']
+    for letter in text:
+        depth += (letter == '(') - (letter == ')')
+        if letter == ',' and not depth:
+            parts.append('')
+        else:
+            parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
+def declared(line):
+    """Name, and bounds and length, of each variable of a declaration."""
+    kind, entities = line.split('::', 1)
+    length = re.search(r'\blen *= *(.*)\)', apart(kind)[0])
+    for entity in apart(entities):
+        name, _, bounds = entity.split('=')[0].partition('(')
+        yield name.strip(), bounds + ' ' + (length.group(1) if length else '')
+
+
+def calls_in_interfaces(text):
+    """Arguments and results of a type's procedures whose bounds or length call a function, but for one of a constant."""
+    lines = [re.sub(r'\s+', ' ', statement).strip() for statement, _ in statements(text)]
+    of_types = set()
+    for line in lines:
+        if re.match(r'procedure\b.*::', line):
+            of_types |= {part.split('=>')[-1].strip() for part in apart(line.split('::')[1])}
+            of_types |= set(re.findall(r'^procedure *\( *(\w+) *\)', line))   # an interface by its name
+    constants = {name for line in lines if re.match(r'[^:]*\bparameter\b.*::', line) for name, _ in declared(line)}
+    own = set()
+    for line in lines:
+        start = START.match(line)
+        if start or line == 'contains':
+            own = set()
+        if start and not start.group(1) and start.group(3) in of_types:
+            result = re.search(r'\bresult *\( *(\w+)', line)
+            own = set(re.findall(r'\w+', start.group(4) or '')) | {result.group(1) if result else start.group(3)}
+        elif own and '::' in line:
+            for name, bounds in declared(line):
+                if name in own and set(re.findall(r'\b\w+ *\( *(\w+)', bounds)) - constants:
+                    yield name
+
+
 def check(root):
     faults, used = [], set()
     for path in sorted(path for folder in FOLDERS for path in (root / folder).rglob('*')):
         if path.suffix not in ('.f90', '.pf'):
             continue
         file = path.relative_to(root).as_posix()
-        for name, lines, arguments in procedures(path.read_text()):
+        text = path.read_text()
+        faults += [f'{file}: bounds or length of {name}, of a procedure of a type, call a function'
+                   for name in calls_in_interfaces(text)]
+        for name, lines, arguments in procedures(text):
             wrong = []
             if lines > LONGEST:
                 wrong.append(f'has {lines} lines, more than {LONGEST}')

@@ -59,7 +59,7 @@ contains
         class(step_start), intent(in) :: self
         real(dp), intent(in) :: time
         type(fault_state), intent(in) :: state   !! at the end of the step
-        real(dp) :: slip(size(self%slip))
+        real(dp), allocatable :: slip(:)
         real(dp) :: dt, u
 
         dt = state%time - self%time

@@ -109,7 +109,7 @@ contains
     !> Lengths of the files so far [bytes]; whole numbers, 0 on all processes but the first.
     pure function sizes(self) result(bytes)
         class(recorder), intent(in) :: self
-        real(dp) :: bytes(3 + size(self%stations))
+        real(dp), allocatable :: bytes(:)
 
         bytes = real([self%global%bytes, self%events%bytes, self%contours%bytes, &
             self%stations%bytes], dp)

@@ -593,9 +593,10 @@ contains
     pure function numbers(self, name) result(values)
         class(table), intent(in) :: self
         character(len=*), intent(in) :: name
-        real(dp) :: values(size(self%values, 2))
+        real(dp), allocatable :: values(:)
         integer :: place
 
+        allocate (values(size(self%values, 2)))
         if (size(values) == 0) return
         place = self%column(name)
         values = self%values(place, :)

@@ -19,7 +19,7 @@ contains
     pure function at(self, x, z) result(values)
         class(map_on_grid), intent(in) :: self
         real(dp), intent(in) :: x, z   !! [L]
-        real(dp) :: values(size(self%values, 1))
+        real(dp), allocatable :: values(:)
         integer :: i, k
         real(dp) :: u, w
 

@@ -31,9 +31,10 @@ contains
     pure function place(self, combination) result(places)
         class(sweep_plan), intent(in) :: self
         integer, intent(in) :: combination            !! from 1
-        integer :: places(size(self%axes))
+        integer, allocatable :: places(:)
         integer :: rest, i
 
+        allocate (places(size(self%axes)))
         rest = combination - 1
         do i = size(self%axes), 1, -1
             places(i) = 1 + mod(rest, size(self%axes(i)%values))
@@ -45,7 +46,7 @@ contains
     pure function point(self, combination) result(values)
         class(sweep_plan), intent(in) :: self
         integer, intent(in) :: combination            !! from 1
-        real(dp) :: values(size(self%axes))
+        real(dp), allocatable :: values(:)
         integer :: places(size(self%axes)), i
 
         places = self%place(combination)

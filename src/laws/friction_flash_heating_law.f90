@@ -78,7 +78,7 @@ contains
         real(wp) :: c(size(table))
 
         n_own = size(table)
-        call self%read_common(table, n_needed, n, constants, c, status)
+        call self%read_common(size(table), table, n_needed, n, constants, c, status)
         if (status < 0) return
         status = friction_bad_property
         if (self%a < least_direct * self%b) return

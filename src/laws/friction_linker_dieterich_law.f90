@@ -48,7 +48,7 @@ contains
         real(wp) :: c(size(table))
 
         n_own = size(table)
-        call self%read_common(table, n_needed, n, constants, c, status)
+        call self%read_common(size(table), table, n_needed, n, constants, c, status)
         if (status < 0) return
         self%alpha = c(6)
         self%evolution = int(c(7))

@@ -129,20 +129,22 @@ contains
         real(wp) :: c(n_constants)
 
         n_own = n_constants
-        call self%read_common(rate_state_constants, n_needed, n, constants, c, status)
+        call self%read_common(n_constants, rate_state_constants, n_needed, n, constants, c, &
+            status)
         if (status < 0) return
         self%evolution = int(c(6))
         self%theta_0 = c(7)
     end subroutine read_constants
 
     !> Completes the constants by their table and takes those that extensions have, too.
-    pure subroutine read_common(self, table, needed, n, constants, c, status)
+    pure subroutine read_common(self, n_all, table, needed, n, constants, c, status)
         class(rate_state_law), intent(inout) :: self
+        integer, intent(in) :: n_all                 !! size of the table
         type(law_constant), intent(in) :: table(:)   !! starts with those of this law
         integer, intent(in) :: needed                !! how many come first and have no default
         integer, intent(in) :: n                     !! how many are given
         real(wp), intent(in) :: constants(n)         !! finite
-        real(wp), intent(out) :: c(size(table))      !! all of them, if the status is ok
+        real(wp), intent(out) :: c(n_all)            !! all of them, if the status is ok
         integer, intent(out) :: status               !! ok, bad size, or bad property
 
         status = friction_bad_size
