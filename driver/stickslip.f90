@@ -50,9 +50,8 @@ contains
 
     !> Have all processes that a launcher has started the same to tell? Those of other verbs than
     !> `fault` have nothing to do with each other.
-    pure function is_told_once(wanted) result(yes)
+    pure logical function is_told_once(wanted) result(yes)
         type(command), intent(in) :: wanted
-        logical :: yes
 
         select case (wanted%verb)
         case ('run', 'point', 'sweep', 'stability', 'check')

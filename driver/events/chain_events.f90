@@ -87,10 +87,9 @@ contains
 
     !> Are the first and the last event one, over the seam of a ring? Once they are they stay so:
     !> events never shrink.
-    pure function over_seam(self, n_blocks) result(yes)
+    pure logical function over_seam(self, n_blocks) result(yes)
         class(chain_finder), intent(in) :: self
         integer, intent(in) :: n_blocks
-        logical :: yes
 
         yes = .false.
         if (self%ring .and. self%count > 1) yes = self%events(1)%first == 1 &

@@ -118,9 +118,8 @@ contains
 
     contains
 
-        pure function linear(ends) result(value)
+        pure real(dp) function linear(ends) result(value)
             real(dp), intent(in) :: ends(2)
-            real(dp) :: value
 
             value = (1.0_dp - share) * ends(1) + share * ends(2)
         end function linear

@@ -88,11 +88,10 @@ contains
         end do
     end function read_off
 
-    pure function effects_of(this, before, ratio, hold_time) result(effects)
+    pure type(piece_effects) function effects_of(this, before, ratio, hold_time) result(effects)
         type(friction_range), intent(in) :: this, before
         real(dp), intent(in) :: ratio       !! of the speeds, > 0
         real(dp), intent(in) :: hold_time   !! between the two [T]
-        type(piece_effects) :: effects
         real(dp) :: extreme
 
         effects%after_hold = hold_time > 0.0_dp

@@ -76,18 +76,16 @@ contains
     end subroutine look_at_energy
 
     !> Does the method of the steps damp oscillations?
-    pure function damps_steps(run) result(damps)
+    pure logical function damps_steps(run) result(damps)
         type(settings), intent(in) :: run
-        logical :: damps
 
         damps = run%rho_infinity >= 0.0_dp .and. run%rho_infinity < 1.0_dp .or. run%mass > 0.0_dp &
             .and. run%gamma > 0.5_dp .and. .not. run%adaptive
     end function damps_steps
 
     !> How long a slip event lasts, about [T].
-    pure function event_duration(run) result(lasts)
+    pure real(dp) function event_duration(run) result(lasts)
         type(settings), intent(in) :: run
-        real(dp) :: lasts
         real(dp), parameter :: pi = acos(-1.0_dp)
 
         lasts = pi * sqrt(run%mass / run%stiffness)
@@ -95,10 +93,9 @@ contains
 
     !> The longest fixed step that follows an event [T]. Where friction drops at once, the moments
     !> count at which it does and the block stops.
-    pure function longest_step(run, law) result(dt)
+    pure real(dp) function longest_step(run, law) result(dt)
         type(settings), intent(in) :: run
         type(law_facts), intent(in) :: law
-        real(dp) :: dt
 
         dt = merge(0.05_dp, 0.2_dp, law%rate_weakening > 0.0_dp) * event_duration(run)
     end function longest_step
@@ -161,10 +158,9 @@ contains
             &periods, stress drops and friction depend on it. Take ' // remedies(run, law, drop))]
     end subroutine look_at_contact
 
-    function find_drop(run, law) result(drop)
+    type(drop_of_friction) function find_drop(run, law) result(drop)
         type(settings), intent(in) :: run
         type(law_facts), intent(in) :: law
-        type(drop_of_friction) :: drop
         real(dp) :: normal, fastest   ! [F], [L/T]
 
         normal = run%area * run%drive%largest_normal()
@@ -178,11 +174,10 @@ contains
 
     !> Has the ringing died away before the drive has made up for the drop? And does the contact,
     !> which swings about the spring's force when the block stops, hold in the other sense?
-    pure function dies_away(run, law, drop)
+    pure logical function dies_away(run, law, drop)
         type(settings), intent(in) :: run
         type(law_facts), intent(in) :: law
         type(drop_of_friction), intent(in) :: drop
-        logical :: dies_away
         real(dp), parameter :: pi = acos(-1.0_dp), enough = 4.0_dp, safe = 0.8_dp
         real(dp) :: rate, turn   ! [1/T], [-]
 

@@ -130,10 +130,9 @@ contains
     end subroutine follow
 
     !> Is slip in a step so fast, and does it change so much, that it counts when it is how fast?
-    pure function tells_more(self, old, new) result(yes)
+    pure logical function tells_more(self, old, new) result(yes)
         class(event_finder), intent(in) :: self
         type(moment), intent(in) :: old, new
-        logical :: yes
         real(dp), parameter :: even = 0.02_dp   !! part of the velocity
         real(dp), parameter :: least = 64.0_dp * epsilon(1.0_dp)   !! part of the time, that can be
                                                                    !! told in parts
@@ -149,20 +148,18 @@ contains
     end function tells_more
 
     !> Of the block between two moments [L/T].
-    pure function mean_velocity(self, a, b) result(v)
+    pure real(dp) function mean_velocity(self, a, b) result(v)
         class(event_finder), intent(in) :: self
         type(moment), intent(in) :: a, b
-        real(dp) :: v
 
         v = (b%drive - a%drive - (b%force - a%force) / self%stiffness) / (b%time - a%time)
     end function mean_velocity
 
     !> Does a block whose place is a cubic of time move in one direction alone? Velocities at the
     !> ends of long steps may be uncertain; such ones tell nothing.
-    pure function goes_on(a, b, mean) result(yes)
+    pure logical function goes_on(a, b, mean) result(yes)
         type(moment), intent(in) :: a, b
         real(dp), intent(in) :: mean   !! velocity [L/T]
-        logical :: yes
 
         yes = .false.
         if (abs(mean) > 0.0_dp) yes = min(a%velocity / mean, b%velocity / mean) >= 0.0_dp .and. &
@@ -220,9 +217,8 @@ contains
     end subroutine take
 
     !> Slip rate that an event must exceed [L/T].
-    pure function limit(self) result(rate)
+    pure real(dp) function limit(self) result(rate)
         class(event_finder), intent(in) :: self
-        real(dp) :: rate
 
         rate = self%slip_rate
         if (rate <= 0.0_dp) rate = fast * (self%driving + self%yielding)
@@ -343,11 +339,10 @@ contains
     !> When slip becomes slow: by the mean slip rates of a fast step and of the next one, which is
     !> not, as rates in their middles. What exceeds the speed of the loading decays exponentially,
     !> and is its mean a little before the middle [T].
-    pure function slow_from(self, now, slip_rate) result(time)
+    pure real(dp) function slow_from(self, now, slip_rate) result(time)
         type(event_finder), intent(in) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: slip_rate   !! in the step that is not [L/T]
-        real(dp) :: time
         real(dp) :: rates(3)    ! in the fast step, at the limit, in the other step
         real(dp) :: steps(2), times(2), speed
 
@@ -377,10 +372,9 @@ contains
     end subroutine conclude
 
     !> The same in the sense of the loading.
-    pure function mirrored(self, sense) result(image)
+    pure type(moment) function mirrored(self, sense) result(image)
         class(moment), intent(in) :: self
         integer, intent(in) :: sense   !! 1 or -1
-        type(moment) :: image
 
         image = moment(self%time, sense * self%force, self%slip, sense * self%velocity, &
             sense * self%rate, sense * self%drive, self%holds, sense * self%acceleration)
@@ -402,9 +396,8 @@ contains
 
     !> The velocity of a block where it turns from growing to falling, or the reverse, between two
     !> moments, by cubic interpolation; if it does not, that of the first [L/T].
-    pure function velocity_at_turn(a, b) result(velocity)
+    pure real(dp) function velocity_at_turn(a, b) result(velocity)
         type(moment), intent(in) :: a, b
-        real(dp) :: velocity
         real(dp) :: values(2), rates(2), s
         logical :: turns
 
@@ -446,11 +439,10 @@ contains
     end subroutine turn_of_cubic
 
     !> A moment within a step, whose slip is spread as the block's way is.
-    pure function within(self, a, b, time) result(between)
+    pure type(moment) function within(self, a, b, time) result(between)
         class(event_finder), intent(in) :: self
         type(moment), intent(in) :: a, b
         real(dp), intent(in) :: time   !! [T]
-        type(moment) :: between
         real(dp) :: s, dt, mean, way
 
         between = between_moments(a, b, time)
@@ -466,10 +458,9 @@ contains
     end function within
 
     !> A moment between two others: the force by cubic interpolation.
-    pure function between_moments(a, b, time) result(between)
+    pure type(moment) function between_moments(a, b, time) result(between)
         type(moment), intent(in) :: a, b
         real(dp), intent(in) :: time   !! [T]
-        type(moment) :: between
         real(dp) :: s, dt
 
         dt = b%time - a%time

@@ -175,11 +175,10 @@ contains
     end subroutine measure
 
     !> Has a step with slip begun with a contact that stuck? Then friction dropped at its end.
-    pure function drops(self, i, old) result(yes)
+    pure logical function drops(self, i, old) result(yes)
         class(slip_watch), intent(in) :: self
         integer, intent(in) :: i   !! piece
         type(slider_state), intent(in) :: old
-        logical :: yes
         integer, parameter :: sticks = 1
 
         yes = self%jumps
@@ -197,10 +196,9 @@ contains
     end function held
 
     !> Does the normal traction of a block change within a piece?
-    pure function load_changes(self, i) result(yes)
+    pure logical function load_changes(self, i) result(yes)
         class(slip_watch), intent(in) :: self
         integer, intent(in) :: i   !! piece
-        logical :: yes
 
         yes = self%one_block .and. (self%drive%amplitude > 0.0_dp &
             .or. abs(self%drive%normal_rate(i)) > 0.0_dp .or. .not. self%prescribed)
@@ -253,21 +251,19 @@ contains
     end subroutine find_extremes
 
     !> Is the traction that of the contact spring, also under a load that changes at once?
-    pure function keeps_traction(self) result(yes)
+    pure logical function keeps_traction(self) result(yes)
         class(slip_watch), intent(in) :: self
-        logical :: yes
 
         yes = self%law%traits%stiff .and. self%elastic .and. .not. self%law%damping > 0.0_dp
     end function keeps_traction
 
     !> Does friction that creeps follow the load of a step? Not with less slip than it takes to let
     !> the spring that holds the traction change with the load.
-    pure function follows_load(self, step, i, slip) result(follows)
+    pure logical function follows_load(self, step, i, slip) result(follows)
         class(slip_watch), intent(in) :: self
         type(course), intent(in) :: step
         integer, intent(in) :: i         !! piece
         real(dp), intent(in) :: slip     !! in the step [L]
-        logical :: follows
         real(dp) :: loads(3), stiffness
 
         loads = [step%load, step%load(2)]
@@ -279,9 +275,8 @@ contains
     end function follows_load
 
     !> A number with the sense in which a block moves in a step, also less than its place can tell.
-    pure function way_of(old, new) result(way)
+    pure real(dp) function way_of(old, new) result(way)
         type(slider_state), intent(in) :: old, new
-        real(dp) :: way
 
         way = old%v(1) + new%v(1)
         if (.not. abs(way) > 0.0_dp) way = new%x(1) - old%x(1)
@@ -289,10 +284,9 @@ contains
 
     !> Rates with which a cubic does not turn between its ends. Those of a block without mass may be
     !> of what it does after the step: its velocity jumps where a phase of the contact ends.
-    elemental function monotonic(rate, mean) result(limited)
+    elemental real(dp) function monotonic(rate, mean) result(limited)
         real(dp), intent(in) :: rate
         real(dp), intent(in) :: mean   !! between the ends
-        real(dp) :: limited
 
         limited = sign(min(max(0.0_dp, sign(1.0_dp, mean) * rate), 3.0_dp * abs(mean)), mean)
     end function monotonic
@@ -354,10 +348,9 @@ contains
     end function mean_of
 
     !> Does a piece start with the normal traction that the one before ends with?
-    pure function is_gradual(drive, i) result(yes)
+    pure logical function is_gradual(drive, i) result(yes)
         type(programme), intent(in) :: drive
         integer, intent(in) :: i   !! piece
-        logical :: yes
         real(dp), parameter :: round_off = 1.0e-12_dp   !! part
         real(dp) :: before, after
 
@@ -369,13 +362,12 @@ contains
     end function is_gradual
 
     !> What the finder looks at, as means over the blocks.
-    pure function seen(self, state, sums, k, i) result(now)
+    pure type(moment) function seen(self, state, sums, k, i) result(now)
         class(slip_watch), intent(in) :: self
         type(slider_state), intent(in) :: state
         type(block_sums), intent(in) :: sums   !! over the blocks in a step
         integer, intent(in) :: k   !! 1: the state at its start, 2: at its end
         integer, intent(in) :: i   !! piece of the programme
-        type(moment) :: now
         real(dp) :: means(3)       !! over the blocks: velocity, force, slip
 
         means = [sums%velocity(k), sums%spring(k), sums%slip(k)]

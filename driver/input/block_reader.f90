@@ -115,9 +115,8 @@ contains
     end subroutine check_profiles
 
     !> Of equal numbers, that number.
-    pure function mean(values)
+    pure real(dp) function mean(values)
         real(dp), intent(in) :: values(:)   !! one or more
-        real(dp) :: mean
 
         mean = values(1) + sum(values - values(1)) / size(values)
     end function mean
@@ -135,9 +134,8 @@ contains
         end do
     end function on_blocks
 
-    pure function all_alike(constants) result(yes)
+    pure logical function all_alike(constants) result(yes)
         real(dp), intent(in) :: constants(:, :)   !! one row a block
-        logical :: yes
         integer :: place
 
         yes = .true.
@@ -147,10 +145,9 @@ contains
     end function all_alike
 
     !> Which profile is a key's? 0: none.
-    pure function profile_of(profiles, group_of_key, key) result(i)
+    pure integer function profile_of(profiles, group_of_key, key) result(i)
         type(profile), intent(in) :: profiles(:)
         character(len=*), intent(in) :: group_of_key, key
-        integer :: i
 
         do i = size(profiles), 1, -1
             if (profiles(i)%group == group_of_key .and. profiles(i)%key == key) return
@@ -259,11 +256,10 @@ contains
     end subroutine check_constants
 
     !> The constant by which a rule was broken: one that was given block by block.
-    pure function given_cause(table, place, differing) result(cause)
+    pure integer function given_cause(table, place, differing) result(cause)
         type(constant_table), intent(in) :: table
         integer, intent(in) :: place          !! of the constant whose rule is broken
         integer, intent(in) :: differing(:)
-        integer :: cause
         integer :: others(4), k
 
         cause = differing(1)

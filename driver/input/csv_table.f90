@@ -144,9 +144,8 @@ contains
     end subroutine take_text
 
     !> Empty, or a comment: not a row whose first cell spreadsheets could not compute.
-    pure function is_no_row(line) result(yes)
+    pure logical function is_no_row(line) result(yes)
         character(len=*), intent(in) :: line
-        logical :: yes
         character(len=7), parameter :: not_computed(7) = [character(len=7) :: '#N/A', '#DIV/0!', &
             '#VALUE!', '#REF!', '#NAME?', '#NUM!', '#NULL!']
         integer :: i, k
@@ -223,9 +222,8 @@ contains
     end subroutine find_header
 
     !> How many columns have a name that is asked for?
-    pure function columns_found(form) result(n)
+    pure integer function columns_found(form) result(n)
         type(file_form), intent(in) :: form
-        integer :: n
         integer :: i
 
         n = count([(form%places(i) > 0 .and. all(form%places(:i - 1) /= form%places(i)), &
@@ -234,9 +232,8 @@ contains
 
     !> Does this separator part a line that another left whole? Behind a comma, a name that is not
     !> parted may have a unit. Blanks may stand in names.
-    pure function parts_more(trial, form) result(yes)
+    pure logical function parts_more(trial, form) result(yes)
         type(file_form), intent(in) :: trial, form
-        logical :: yes
 
         yes = allocated(form%titles) .and. trial%header_line == form%header_line &
             .and. trial%separator /= ' '
@@ -480,11 +477,10 @@ contains
 
     !> A row of units or the like: its cells that count look like no numbers, but for 1, which is
     !> the unit of what has none. Time or place, the first column that is asked for, has one.
-    pure function holds_words_only(text, form, cells) result(yes)
+    pure logical function holds_words_only(text, form, cells) result(yes)
         character(len=*), intent(in) :: text
         type(file_form), intent(in) :: form
         type(line_cells), intent(in) :: cells
-        logical :: yes
         character(len=:), allocatable :: word
         integer :: words, i
 
@@ -504,9 +500,8 @@ contains
 
     !> Units that begin with a number: 1/s, 10^-6, 0.1 mm. Dates (1/2/2026), times (12:30) and
     !> numbers in groups (10 000) are none.
-    pure function has_unit_behind(word) result(yes)
+    pure logical function has_unit_behind(word) result(yes)
         character(len=*), intent(in) :: word
-        logical :: yes
         integer :: mark, next
 
         mark = scan(word, ' /*^')
@@ -563,9 +558,8 @@ contains
     end subroutine take_cell
 
     !> 1,000 and -12,500 are numbers with a decimal comma, and such with a comma behind thousands.
-    pure function may_part_thousands(word) result(yes)
+    pure logical function may_part_thousands(word) result(yes)
         character(len=*), intent(in) :: word   !! has a comma
-        logical :: yes
         integer :: first, comma
 
         first = verify(word, '+-')
@@ -578,10 +572,9 @@ contains
     ! ---- the table ---------------------------------------------------------------------------
 
     !> Place of a column; 0 if there is none of that name.
-    pure function column(self, name) result(i)
+    pure integer function column(self, name) result(i)
         class(table), intent(in) :: self
         character(len=*), intent(in) :: name
-        integer :: i
 
         do i = size(self%names), 1, -1
             if (self%names(i)%text == name) return

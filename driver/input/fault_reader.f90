@@ -310,10 +310,9 @@ contains
     end subroutine check_contours
 
     !> Another number for any input with other results.
-    pure function fingerprint_of(listing, plan) result(number)
+    pure integer(int64) function fingerprint_of(listing, plan) result(number)
         character(len=*), intent(in) :: listing   !! of the input
         type(fault_plan), intent(in) :: plan
-        integer(int64) :: number
 
         number = listing_fingerprint(listing)
         call mix_map(plan%constants, number)

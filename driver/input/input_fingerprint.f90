@@ -14,9 +14,8 @@ module input_fingerprint
 contains
 
     !> Another number for any other listing, but for keys that change no results.
-    pure function listing_fingerprint(listing) result(number)
+    pure integer(int64) function listing_fingerprint(listing) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
-        integer(int64) :: number
         integer :: first, last, line, i
 
         number = 0

@@ -106,9 +106,8 @@ contains
 
     !> How many letters must be changed, added, taken out or exchanged with the next one to turn
     !> one word into another?
-    pure function edits(from, to) result(n)
+    pure integer function edits(from, to) result(n)
         character(len=*), intent(in) :: from, to
-        integer :: n
         integer :: d(-1:len(from), -1:len(to)), cost, i, j
 
         d = len(from) + len(to)

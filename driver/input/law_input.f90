@@ -92,9 +92,8 @@ contains
     end subroutine read_constant
 
     !> The rule of a constant by itself.
-    pure function range_of(this) result(allowed)
+    pure type(rule) function range_of(this) result(allowed)
         type(law_constant), intent(in) :: this
-        type(rule) :: allowed
 
         allowed = at_least(this%lower)
         if (this%lower > 0.0_dp) allowed = above(0.0_dp)

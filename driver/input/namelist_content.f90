@@ -52,20 +52,18 @@ contains
     end subroutine take_text
 
     !> Is the group in the file? Says that the program knows it.
-    function has_group(self, group) result(found)
+    logical function has_group(self, group) result(found)
         class(content), intent(inout) :: self
         character(len=*), intent(in) :: group
-        logical :: found
 
         call note(self, group, '')
         found = self%line_of_group(group) > 0
     end function has_group
 
     !> Where does the group start? 0: the file does not have it.
-    pure function line_of_group(self, group) result(line)
+    pure integer function line_of_group(self, group) result(line)
         class(content), intent(in) :: self
         character(len=*), intent(in) :: group
-        integer :: line
         integer :: i
 
         line = 0
@@ -75,10 +73,9 @@ contains
     end function line_of_group
 
     !> Is the key in the file? Says that the program knows it.
-    function given(self, group, key) result(found)
+    logical function given(self, group, key) result(found)
         class(content), intent(inout) :: self
         character(len=*), intent(in) :: group, key
-        logical :: found
         integer, allocatable :: mine(:)
 
         call note(self, group, key)
@@ -205,10 +202,9 @@ contains
         if (.not. self%broken) self%not_listed = max(0, unknown - most_shown)
     end subroutine refuse_unknown
 
-    pure function known_group(self, name) result(known)
+    pure logical function known_group(self, name) result(known)
         class(content), intent(in) :: self
         character(len=*), intent(in) :: name
-        logical :: known
         integer :: i
 
         known = .false.
@@ -304,10 +300,9 @@ contains
     end subroutine gather
 
     !> Where in its list does the k-th value of an entry stand?
-    pure function place_of(entry, k) result(place)
+    pure integer function place_of(entry, k) result(place)
         type(namelist_entry), intent(in) :: entry
         integer, intent(in) :: k
-        integer :: place
 
         place = entry%first + (k - 1) * entry%stride
     end function place_of

@@ -97,10 +97,9 @@ contains
     end subroutine parse_namelists
 
     !> Does `&name`, or `$name` as old programs write it, stand here?
-    pure function starts_group(text, at) result(starts)
+    pure logical function starts_group(text, at) result(starts)
         character(len=*), intent(in) :: text
         integer, intent(in) :: at
-        logical :: starts
 
         starts = .false.
         if (scan(text(at:at), '&$') > 0) starts = len(name_at(text, at + 1)) > 0
@@ -399,10 +398,9 @@ contains
     end subroutine add_tokens
 
     !> Is the word here a key, that is, followed by '=' (perhaps after a subscript)?
-    pure function key_follows(text, at) result(follows)
+    pure logical function key_follows(text, at) result(follows)
         character(len=*), intent(in) :: text
         integer, intent(in) :: at
-        logical :: follows
         integer :: i, length, bracket
 
         follows = .false.
@@ -522,10 +520,9 @@ contains
     end subroutine skip_blanks
 
     !> The first place from `at` on that is not blank.
-    pure function past_blanks(text, at) result(place)
+    pure integer function past_blanks(text, at) result(place)
         character(len=*), intent(in) :: text
         integer, intent(in) :: at
-        integer :: place
 
         place = at
         do while (place <= len(text))
@@ -534,18 +531,16 @@ contains
         end do
     end function past_blanks
 
-    pure function is_blank(c) result(blank)
+    pure logical function is_blank(c) result(blank)
         character(len=1), intent(in) :: c
-        logical :: blank
 
         blank = c == ' ' .or. c == achar(9) .or. c == line_feed
     end function is_blank
 
     !> The last character before the end of the line.
-    pure function line_end(text, at) result(last)
+    pure integer function line_end(text, at) result(last)
         character(len=*), intent(in) :: text   !! ended by a line feed
         integer, intent(in) :: at
-        integer :: last
 
         last = at + index(text(at:), line_feed) - 2
     end function line_end

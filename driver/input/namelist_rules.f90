@@ -19,50 +19,42 @@ module namelist_rules
 
 contains
 
-    pure function holds(self, value)
+    pure logical function holds(self, value)
         class(rule), intent(in) :: self
         real(dp), intent(in) :: value   !! finite
-        logical :: holds
 
         holds = value >= self%low .and. value <= self%high
         if (self%low_excluded) holds = holds .and. value > self%low
         if (self%zero_excluded) holds = holds .and. abs(value) > 0.0_dp
     end function holds
 
-    pure function any_number() result(r)
-        type(rule) :: r
-
+    pure type(rule) function any_number() result(r)
         r%text = 'a number'
     end function any_number
 
-    pure function not_zero() result(r)
-        type(rule) :: r
-
+    pure type(rule) function not_zero() result(r)
         r%zero_excluded = .true.
         r%text = 'a number other than 0'
     end function not_zero
 
-    pure function above(low) result(r)
+    pure type(rule) function above(low) result(r)
         real(dp), intent(in) :: low
-        type(rule) :: r
 
         r%low = low
         r%low_excluded = .true.
         r%text = '> ' // short(low)
     end function above
 
-    pure function at_least(low) result(r)
+    pure type(rule) function at_least(low) result(r)
         real(dp), intent(in) :: low
-        type(rule) :: r
 
         r%low = low
         r%text = '>= ' // short(low)
     end function at_least
 
     !> From `low` to `high`, both included.
-    pure function between(low, high) result(r)
+    pure type(rule) function between(low, high) result(r)
         real(dp), intent(in) :: low, high
-        type(rule) :: r
 
         r%low = low
         r%high = high

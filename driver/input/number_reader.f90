@@ -39,9 +39,8 @@ contains
 
     !> A sign, digits with or without a point, and an exponent with its letter. Fortran itself also
     !> reads an exponent without a letter, 1-3, which is a typing error.
-    pure function is_written_as_number(text) result(yes)
+    pure logical function is_written_as_number(text) result(yes)
         character(len=*), intent(in) :: text
-        logical :: yes
         integer :: first, last, point
 
         first = 1

@@ -202,9 +202,8 @@ contains
     end subroutine check_times
 
     !> Is the first row, of zeros but for its time, where every path starts?
-    pure function starts_at_rest(table) result(yes)
+    pure logical function starts_at_rest(table) result(yes)
         type(csv), intent(in) :: table
-        logical :: yes
         integer :: i
 
         yes = .true.

@@ -51,11 +51,10 @@ contains
     end subroutine take_profiles
 
     !> Is an entry of the input one that may name a file, and does?
-    pure function names_profile(file, i, group) result(yes)
+    pure logical function names_profile(file, i, group) result(yes)
         type(namelist_file), intent(in) :: file
         integer, intent(in) :: i                !! entry
         character(len=*), intent(in) :: group   !! that has the key normal_traction
-        logical :: yes
 
         yes = .false.
         associate (entry => file%entries(i))
@@ -65,18 +64,16 @@ contains
         end associate
     end function names_profile
 
-    pure function names_file(token) result(yes)
+    pure logical function names_file(token) result(yes)
         type(value_token), intent(in) :: token
-        logical :: yes
 
         yes = .false.
         if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
     end function names_file
 
     !> Does the input name a NetCDF file anywhere?
-    pure function names_netcdf(file) result(yes)
+    pure logical function names_netcdf(file) result(yes)
         type(namelist_file), intent(in) :: file
-        logical :: yes
         integer :: i
 
         yes = .false.
@@ -88,9 +85,8 @@ contains
         end do
     end function names_netcdf
 
-    pure function is_netcdf(name) result(yes)
+    pure logical function is_netcdf(name) result(yes)
         character(len=*), intent(in) :: name
-        logical :: yes
 
         yes = lower(name(max(1, len(name) - 2):)) == '.nc'
     end function is_netcdf

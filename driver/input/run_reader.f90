@@ -102,10 +102,9 @@ contains
     end subroutine read_normal_motion
 
     !> A number that is another one for any other input, but for keys that change no results.
-    pure function fingerprint_of(listing, run) result(number)
+    pure integer(int64) function fingerprint_of(listing, run) result(number)
         character(len=*), intent(in) :: listing   !! of the namelists, a line a key
         type(settings), intent(in) :: run         !! files that they name included
-        integer(int64) :: number
 
         number = listing_fingerprint(listing)
         if (allocated(run%chain%load)) call mix(transfer(run%chain%load, [number]), number)

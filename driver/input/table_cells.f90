@@ -83,10 +83,9 @@ contains
     end subroutine find_end
 
     !> The quote that ends a text; two in a row belong to it. Behind the line if there is none.
-    pure function closing_quote(text, from, last) result(place)
+    pure integer function closing_quote(text, from, last) result(place)
         character(len=*), intent(in) :: text
         integer, intent(in) :: from, last
-        integer :: place
 
         place = from
         do while (place <= last)
@@ -99,9 +98,8 @@ contains
         end do
     end function closing_quote
 
-    pure function is_blank(c) result(blank)
+    pure logical function is_blank(c) result(blank)
         character(len=1), intent(in) :: c
-        logical :: blank
 
         blank = c == ' ' .or. c == tab
     end function is_blank

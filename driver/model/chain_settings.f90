@@ -26,9 +26,8 @@ module chain_settings
 
 contains
 
-    pure function loads_differ(self) result(yes)
+    pure logical function loads_differ(self) result(yes)
         class(chain), intent(in) :: self
-        logical :: yes
 
         yes = self%scatter > 0.0_dp .or. allocated(self%load)
     end function loads_differ
@@ -87,9 +86,8 @@ contains
         end do
     end function random_numbers
 
-    pure function next_bits(bits) result(next)
+    pure integer(int64) function next_bits(bits) result(next)
         integer(int64), intent(in) :: bits
-        integer(int64) :: next
 
         next = ieor(bits, shiftl(bits, 13))
         next = ieor(next, shiftr(next, 7))

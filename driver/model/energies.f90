@@ -95,9 +95,8 @@ contains
     end function held
 
     !> What the balance does not explain: the error of the time integration.
-    pure function unbalanced(self) result(rest)
+    pure real(dp) function unbalanced(self) result(rest)
         class(energy_balance), intent(in) :: self
-        real(dp) :: rest
 
         rest = self%at_start + self%drive_work - self%kinetic - self%spring - self%contact &
             - self%damped - self%dissipated

@@ -90,9 +90,8 @@ contains
     end function z_of
 
     !> Cells from one depth of a contour to the next: there are 200 depths at most.
-    pure function contour_stride(self) result(stride)
+    pure integer function contour_stride(self) result(stride)
         class(fault_plan), intent(in) :: self
-        integer :: stride
         integer, parameter :: most_depths = 200
 
         stride = (self%nz + most_depths - 1) / most_depths

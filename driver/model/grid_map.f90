@@ -46,9 +46,8 @@ contains
     end subroutine place
 
     !> How many nodes, which increase, are not beyond a place?
-    pure function nodes_up_to(nodes, x) result(n)
+    pure integer function nodes_up_to(nodes, x) result(n)
         real(dp), intent(in) :: nodes(:), x
-        integer :: n
         integer :: beyond, middle
 
         n = 0

@@ -17,9 +17,8 @@ module law_facts
 contains
 
     !> Has the law a similarity ratio R, which tells how much of the friction is mobilised?
-    pure function has_r(props) result(yes)
+    pure logical function has_r(props) result(yes)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        logical :: yes
         type(library_variable) :: variable
 
         variable = friction_internal_variable(friction_law_of(props))
@@ -27,9 +26,8 @@ contains
     end function has_r
 
     !> What the law calls its internal variable; R if it has none.
-    pure function internal_variable(props) result(name)
+    pure character(len=5) function internal_variable(props) result(name)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
-        character(len=5) :: name
         type(library_variable) :: variable
 
         variable = friction_internal_variable(friction_law_of(props))
@@ -50,11 +48,10 @@ contains
 
     !> What a surface that slides carries under a pressure, from its friction coefficient, as
     !> `statev` has it [F/L^2].
-    elemental function strength_at(law, mu, pressure) result(strength)
+    elemental real(dp) function strength_at(law, mu, pressure) result(strength)
         type(facts), intent(in) :: law
         real(dp), intent(in) :: mu         !! [-]
         real(dp), intent(in) :: pressure   !! >= 0 [F/L^2]
-        real(dp) :: strength
 
         strength = min(law%shear_cap, mu * pressure + law%cohesion)
     end function strength_at

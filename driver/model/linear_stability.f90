@@ -94,10 +94,9 @@ contains
 
     !> Does friction fall faster with slip than the contact spring unloads, or with the slip rate
     !> than a damper beside it? Then it jumps, whatever the block does.
-    pure function snaps_back(this, contact) result(snaps)
+    pure logical function snaps_back(this, contact) result(snaps)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
-        logical :: snaps
 
         snaps = .false.
         if (contact%damper > 0.0_dp) then
@@ -108,17 +107,15 @@ contains
         end if
     end function snaps_back
 
-    pure function depends_on_rate(contact) result(depends)
+    pure logical function depends_on_rate(contact) result(depends)
         type(contact_response), intent(in) :: contact
-        logical :: depends
 
         depends = abs(contact%by_rate) > 0.0_dp
     end function depends_on_rate
 
     !> Do the forces of the two springs alone decide the motion, without mass and damper?
-    pure function in_series(this) result(yes)
+    pure logical function in_series(this) result(yes)
         type(sliding_case), intent(in) :: this
-        logical :: yes
 
         yes = .not. (this%mass > 0.0_dp .or. this%damping > 0.0_dp)
     end function in_series
@@ -160,11 +157,10 @@ contains
             contact))
     end function packed
 
-    pure function unpacked(this, contact, x) result(d)
+    pure type(disturbance) function unpacked(this, contact, x) result(d)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
         real(dp), intent(in) :: x(:)
-        type(disturbance) :: d
         real(dp) :: all(most_states)
 
         all = unpack(x, states(this, contact), 0.0_dp)
@@ -172,10 +168,9 @@ contains
     end function unpacked
 
     !> Is the traction of the contact spring a state of its own?
-    pure function states_traction(this, contact) result(yes)
+    pure logical function states_traction(this, contact) result(yes)
         type(sliding_case), intent(in) :: this
         type(contact_response), intent(in) :: contact
-        logical :: yes
 
         yes = contact%damper > 0.0_dp .or. (.not. contact%follows_velocity .and. &
             depends_on_rate(contact) .and. .not. in_series(this))
@@ -408,10 +403,9 @@ contains
 
     !> Where the growth changes its sign or, if on one side nothing grows or dies away, where the
     !> verdict changes.
-    function change_between(growth, x) result(place)
+    real(dp) function change_between(growth, x) result(place)
         type(growth_over), intent(in) :: growth
         real(dp), intent(in) :: x(2)
-        real(dp) :: place
         type(growth_over) :: smooth
         real(dp) :: low(values), high(values)
 

@@ -30,9 +30,8 @@ module loading_path
 contains
 
     !> How many increments are there in all? A real number: it may be more than can be counted.
-    pure function increments(self) result(n)
+    pure real(dp) function increments(self) result(n)
         class(path), intent(in) :: self
-        real(dp) :: n
 
         n = real(self%cycles, dp) * sum(real(self%steps, dp))
     end function increments

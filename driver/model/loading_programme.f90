@@ -29,10 +29,9 @@ module loading_programme
 contains
 
     !> Which piece holds at time `t`?
-    pure function piece(self, t) result(i)
+    pure integer function piece(self, t) result(i)
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
-        integer :: i
 
         i = 1
         if (size(self%start) > 1) i = max(1, nodes_up_to(self%start, t))

@@ -148,9 +148,7 @@ contains
         end subroutine evaluate
 
         !> A residual this small is zero: relative to the tractions, and as displacements resolve.
-        pure function allowed() result(zero)
-            real(dp) :: zero
-
+        pure real(dp) function allowed() result(zero)
             zero = tolerance * max(maxval(abs(new%traction)), maxval(abs(old%traction)), &
                 maxval(abs(values), mask=by_traction)) &
                 + 4.0_dp * epsilon(zero) * maxval(old%props(prop_alpha_n:prop_alpha_t)) &
@@ -206,9 +204,8 @@ contains
     end subroutine add_work
 
     !> Elastic energy per area [F/L].
-    pure function stored(self) result(energy)
+    pure real(dp) function stored(self) result(energy)
         class(contact_point), intent(in) :: self
-        real(dp) :: energy
 
         energy = 0.5_dp * (self%traction(1)**2 / self%props(prop_alpha_n) &
             + sum(self%traction(2:)**2) / self%props(prop_alpha_t))

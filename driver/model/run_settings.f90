@@ -59,25 +59,22 @@ contains
     end function event_force
 
     !> Does the normal traction fall to 0, other than at once?
-    pure function load_vanishes(self) result(yes)
+    pure logical function load_vanishes(self) result(yes)
         class(settings), intent(in) :: self
-        logical :: yes
 
         yes = minval(self%drive%normal) - self%drive%amplitude <= 0.0_dp .and. self%load_varies()
     end function load_vanishes
 
     !> Does the normal traction change, other than at once?
-    pure function load_varies(self) result(yes)
+    pure logical function load_varies(self) result(yes)
         class(settings), intent(in) :: self
-        logical :: yes
 
         yes = self%drive%amplitude > 0.0_dp .or. any(abs(self%drive%normal_rate) > 0.0_dp)
     end function load_varies
 
     !> Is there one block alone, which nothing but its drive spring holds?
-    pure function one_by_itself(self) result(yes)
+    pure logical function one_by_itself(self) result(yes)
         class(settings), intent(in) :: self
-        logical :: yes
 
         yes = self%chain%n_blocks == 1 .and. .not. (self%chain%ends == ends_fixed &
             .and. self%chain%coupling > 0.0_dp)
@@ -85,9 +82,8 @@ contains
 
     !> 1 or -1: the sense in which the drive moves first; of one that never does, that in which its
     !> spring pulls at the start, or else the block moves.
-    pure function loading_sense(self) result(sense)
+    pure integer function loading_sense(self) result(sense)
         class(settings), intent(in) :: self
-        integer :: sense
         real(dp) :: senses(3)
         integer :: i
 

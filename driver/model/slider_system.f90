@@ -103,9 +103,8 @@ contains
     end function cohesions
 
     !> Does the block move across the interface by itself?
-    pure function free(self) result(yes)
+    pure logical function free(self) result(yes)
         class(normal_motion), intent(in) :: self
-        logical :: yes
 
         yes = self%mass > 0.0_dp
     end function free
@@ -193,10 +192,9 @@ contains
     end subroutine add_coupling
 
     !> Energy of the springs between neighbours [F L].
-    pure function coupling_energy(self, x) result(energy)
+    pure real(dp) function coupling_energy(self, x) result(energy)
         class(slider), intent(in) :: self
         real(dp), intent(in) :: x(:)   !! displacements [L]
-        real(dp) :: energy
         real(dp) :: before, after
         integer :: i
 

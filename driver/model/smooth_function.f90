@@ -70,10 +70,9 @@ contains
     !> Where the first value of a function changes its sign, to round-off: T. R. Chandrupatla's
     !> method (Advances in Engineering Software 28, 1997), inverse quadratic interpolation where
     !> that can be trusted, halving where not. A pole that changes the sign counts.
-    function find_root(f, from, to) result(x)
+    real(dp) function find_root(f, from, to) result(x)
         class(function_of_one), intent(in) :: f
         real(dp), intent(in) :: from, to   !! the signs there differ
-        real(dp) :: x
         integer, parameter :: most = 200
         real(dp) :: a, b, c, fa, fb, fc, fx(values), part, nearest, xi, phi
         integer :: i

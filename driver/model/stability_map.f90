@@ -31,10 +31,9 @@ module stability_map
 contains
 
     !> The value at a place of the grid.
-    pure function value_at(self, i) result(value)
+    pure real(dp) function value_at(self, i) result(value)
         class(map_axis), intent(in) :: self
         integer, intent(in) :: i   !! from 0
-        real(dp) :: value
 
         value = self%range(1) * (self%range(2) / self%range(1))**(real(i, dp) / cells)
     end function value_at

@@ -91,10 +91,9 @@ contains
     end subroutine find_all_critical
 
     !> The critical value nearest to another one, by its ratio to that; NaN if there is none.
-    pure function closest_to(self, value) result(closest)
+    pure real(dp) function closest_to(self, value) result(closest)
         class(critical_list), intent(in) :: self
         real(dp), intent(in) :: value   !! where 0 or less, the least one counts as nearest
-        real(dp) :: closest
 
         closest = ieee_value(closest, ieee_quiet_nan)
         if (size(self%found) == 0) return

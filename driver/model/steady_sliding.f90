@@ -115,10 +115,9 @@ contains
     end subroutine take_piece
 
     !> Does steady sliding depend on a key of the input, and does this program know how?
-    function knows(self, key) result(known)
+    logical function knows(self, key) result(known)
         class(sliding_case), target, intent(in) :: self
         character(len=*), intent(in) :: key   !! group%key
-        logical :: known
         real(dp), pointer :: number
 
         call find_number(self, key, number)
@@ -126,10 +125,9 @@ contains
     end function knows
 
     !> The value of a key that is known.
-    function value_of(self, key) result(value)
+    real(dp) function value_of(self, key) result(value)
         class(sliding_case), target, intent(in) :: self
         character(len=*), intent(in) :: key   !! group%key
-        real(dp) :: value
         real(dp), pointer :: number
 
         call find_number(self, key, number)
@@ -194,10 +192,9 @@ contains
     end subroutine take_constants
 
     !> Where a constant of the law stands; 0 for another key.
-    pure function place_of(self, key) result(place)
+    pure integer function place_of(self, key) result(place)
         type(sliding_case), intent(in) :: self
         character(len=*), intent(in) :: key   !! group%key
-        integer :: place
 
         place = 0
         if (index(key, 'friction%') == 1) place = friction_place(friction_law_of(self%props), &
@@ -357,10 +354,9 @@ contains
     end subroutine widen
 
     !> Where the rate is 0, or that end at which it comes closest.
-    function root_between(rate, bounds) result(x)
+    real(dp) function root_between(rate, bounds) result(x)
         type(memory_rate), intent(in) :: rate
         real(dp), intent(in) :: bounds(2)
-        real(dp) :: x
         real(dp) :: lower(values), upper(values)
 
         lower = rate%at(bounds(1))
@@ -418,9 +414,8 @@ contains
     end subroutine differentiate
 
     !> The way to the farther of two bounds, on whose other sides a law is another one.
-    pure function roomy(x, lower, upper) result(way)
+    pure real(dp) function roomy(x, lower, upper) result(way)
         real(dp), intent(in) :: x, lower, upper
-        real(dp) :: way
 
         way = upper - x
         if (x - lower > way) way = lower - x

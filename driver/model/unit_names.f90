@@ -14,9 +14,8 @@ module unit_names
 contains
 
     !> Of a traction: force over length squared, by its own name where there is one.
-    pure function stress(self) result(name)
+    pure character(len=40) function stress(self) result(name)
         class(units), intent(in) :: self
-        character(len=40) :: name
 
         select case (trim(self%force) // '/' // trim(self%length))
         case ('N/m')

@@ -26,9 +26,8 @@ module chain_fields
 
 contains
 
-    pure function chain_record_bytes(n_blocks) result(bytes)
+    pure integer(int64) function chain_record_bytes(n_blocks) result(bytes)
         integer, intent(in) :: n_blocks
-        integer(int64) :: bytes
 
         bytes = field_record_bytes(int(n_blocks, int64), size(names))
     end function chain_record_bytes
@@ -99,9 +98,8 @@ contains
     end subroutine save
 
     !> Of all records, without what describes them.
-    pure function bytes(self)
+    pure integer(int64) function bytes(self)
         class(chain_field_file), intent(in) :: self
-        integer(int64) :: bytes
 
         bytes = 0
         if (self%n_blocks > 0) bytes = self%parts%records * chain_record_bytes(self%n_blocks)

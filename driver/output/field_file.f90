@@ -42,10 +42,9 @@ module field_file
 
 contains
 
-    pure function field_record_bytes(cells, fields) result(bytes)
+    pure integer(int64) function field_record_bytes(cells, fields) result(bytes)
         integer(int64), intent(in) :: cells
         integer, intent(in) :: fields
-        integer(int64) :: bytes
 
         bytes = word * (1 + fields * cells)
     end function field_record_bytes
@@ -126,16 +125,14 @@ contains
     end subroutine put
 
     !> Must records be saved before another one begins?
-    pure function is_full(self) result(full)
+    pure logical function is_full(self) result(full)
         class(field_parts), intent(in) :: self
-        logical :: full
 
         full = .not. self%is_saved() .and. mod(self%records, self%per_part) == 0
     end function is_full
 
-    pure function is_saved(self) result(saved)
+    pure logical function is_saved(self) result(saved)
         class(field_parts), intent(in) :: self
-        logical :: saved
 
         saved = self%saved == self%records
     end function is_saved
@@ -217,9 +214,8 @@ contains
     ! ---- going on with the files of a run that was stopped -----------------------------------
 
     !> Records in the files that are there, as a run has left them.
-    function count_saved(self) result(records)
+    integer(int64) function count_saved(self) result(records)
         class(field_parts), intent(inout) :: self
-        integer(int64) :: records
         integer(int64) :: part
         logical :: there
 
@@ -303,10 +299,9 @@ contains
     end subroutine find_part
 
     !> The last of those records from `first` on that one data item of a description can take.
-    function last_together(self, first) result(last)
+    integer(int64) function last_together(self, first) result(last)
         class(field_parts), intent(in) :: self
         integer(int64), intent(in) :: first
-        integer(int64) :: last
 
         last = self%saved
         if (fields_are_hdf5() == 0) last = min(last, first + self%per_part - 1 - mod(first - 1, &
@@ -361,18 +356,16 @@ contains
     ! ---- names and numbers -------------------------------------------------------------------
 
     !> Parts of all records.
-    pure function parts(self) result(n)
+    pure integer(int64) function parts(self) result(n)
         class(field_parts), intent(in) :: self
-        integer(int64) :: n
 
         n = (self%records - 1) / self%per_part + 1
     end function parts
 
     !> Records of a part.
-    pure function records_of(self, part) result(n)
+    pure integer(int64) function records_of(self, part) result(n)
         class(field_parts), intent(in) :: self
         integer(int64), intent(in) :: part
-        integer(int64) :: n
 
         n = min(self%per_part, self%records - (part - 1) * self%per_part)
     end function records_of

@@ -53,10 +53,9 @@ contains
     end function piece_rows
 
     !> How many pieces a run to time `t` has come to; starts are sums of durations, with round-off.
-    pure function pieces_reached(drive, t) result(pieces)
+    pure integer function pieces_reached(drive, t) result(pieces)
         type(programme), intent(in) :: drive
         real(dp), intent(in) :: t   !! [T]
-        integer :: pieces
         real(dp), parameter :: round_off = 1.0e-12_dp   !! part
 
         pieces = drive%piece(t * (1.0_dp - round_off))

@@ -187,9 +187,8 @@ contains
     end subroutine flush_all
 
     !> Has something been lost on its way to the disk?
-    pure function failed(self) result(lost)
+    pure logical function failed(self) result(lost)
         class(csv_recorder), intent(in) :: self
-        logical :: lost
 
         lost = self%series%failed .or. self%events%failed .or. self%fields%parts%failed
     end function failed

@@ -52,9 +52,8 @@ contains
         end do
     end subroutine prepare_output
 
-    function is_result(path, directory, stem) result(yes)
+    logical function is_result(path, directory, stem) result(yes)
         character(len=*), intent(in) :: path, directory, stem
-        logical :: yes
         integer :: slash, i, k
 
         slash = index(path, '/', back=.true.)
@@ -103,11 +102,10 @@ contains
 
     !> Does another input have this name? A run of its own leaves events beside its table, or a
     !> picture, and its table is one over time.
-    function is_name_of_input(base, ending, has_picture) result(yes)
+    logical function is_name_of_input(base, ending, has_picture) result(yes)
         character(len=*), intent(in) :: base     !! directory and stem
         character(len=*), intent(in) :: ending   !! of tables
         logical, intent(in) :: has_picture       !! have ours one?
-        logical :: yes
         character(len=5) :: first
         integer :: unit, status
 

@@ -46,9 +46,8 @@ contains
     end subroutine tick
 
     !> How many columns has the time series of a run?
-    pure function series_size(run) result(columns)
+    pure integer function series_size(run) result(columns)
         type(settings), intent(in) :: run
-        integer :: columns
 
         columns = merge(13, 11, run%across%free())
     end function series_size
@@ -76,9 +75,8 @@ contains
         if (columns > 11) row(12:) = [state%statev(1, statev_u_n), state%v_n]
     end function series_row
 
-    pure function mean(values)
+    pure real(dp) function mean(values)
         real(dp), intent(in) :: values(:)
-        real(dp) :: mean
 
         mean = sum(values) / size(values)
     end function mean

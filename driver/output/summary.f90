@@ -112,18 +112,16 @@ contains
             ', mean ', rounded_text(sum(apart) / size(apart), 10, 3), ' [T], by a tighter run'
     end subroutine print_event_times
 
-    pure function per_step(total, steps) result(text)
+    pure character(len=12) function per_step(total, steps) result(text)
         integer, intent(in) :: total, steps
-        character(len=12) :: text
 
         write (text, '(f12.2)') real(total, dp) / max(1, steps)
         text = adjustl(text)
     end function per_step
 
     !> Of the pieces together.
-    pure function total(pieces) result(all)
+    pure type(event_totals) function total(pieces) result(all)
         type(event_totals), intent(in) :: pieces(:)
-        type(event_totals) :: all
 
         all%events = sum(pieces%events)
         all%recurrences = sum(pieces%recurrences)
@@ -140,10 +138,9 @@ contains
         write (report, '(4a)') title, mean(amount, count), ' ', unit
     end subroutine line
 
-    pure function mean(total, count) result(text)
+    pure character(len=12) function mean(total, count) result(text)
         real(dp), intent(in) :: total
         integer, intent(in) :: count
-        character(len=12) :: text
 
         text = '-'
         if (count > 0) text = rounded_text(total / count, 12, 5)

@@ -23,9 +23,8 @@ module sweep_table
 contains
 
     !> The time from which on events tell the regime [T].
-    pure function late_from(run) result(time)
+    pure real(dp) function late_from(run) result(time)
         type(settings), intent(in) :: run
-        real(dp) :: time
 
         time = start_up * run%t_end
     end function late_from

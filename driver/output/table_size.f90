@@ -14,9 +14,8 @@ module table_size
 contains
 
     !> As far as it is known before the run: the number of adaptive steps is unknown.
-    pure function expected_bytes(run) result(bytes)
+    pure real(dp) function expected_bytes(run) result(bytes)
         type(settings), intent(in) :: run
-        real(dp) :: bytes
         real(dp), parameter :: number = 24.0_dp   !! bytes of one with its comma
         real(dp) :: rows
 

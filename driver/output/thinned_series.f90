@@ -36,9 +36,8 @@ contains
     end subroutine prepare
 
     !> Rows that are kept now.
-    pure function kept(self) result(n)
+    pure integer function kept(self) result(n)
         class(thinned), intent(in) :: self
-        integer :: n
 
         n = self%count + min(self%filled, kept_rows)
     end function kept

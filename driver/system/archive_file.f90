@@ -73,11 +73,10 @@ contains
     end subroutine open
 
     !> Reads the file once for its checksum, and goes back to the first field.
-    function is_intact(self, bytes) result(intact)
+    logical function is_intact(self, bytes) result(intact)
         class(archive), intent(inout) :: self
         integer(int64), intent(in) :: bytes   !! length of the file
         integer, parameter :: part = 512   !! words that are read together
-        logical :: intact
         integer(int64) :: chunk(part), left, found, checksum
         integer :: n, status
 

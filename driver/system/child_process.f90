@@ -46,17 +46,15 @@ contains
         ignored = c_close(self%pipe_end)
     end subroutine start
 
-    elemental function running(self)
+    elemental logical function running(self)
         class(child), intent(in) :: self
-        logical :: running
 
         running = self%id > 0
     end function running
 
     !> In the child: its parent has ended, nobody waits for what it is doing.
-    function orphaned(self)
+    logical function orphaned(self)
         class(child), intent(in) :: self
-        logical :: orphaned
 
         orphaned = c_getppid() /= self%parent
     end function orphaned

@@ -9,8 +9,7 @@ contains
 
     !> Has one started this process beside another that is the first? Their ways of telling so. Of
     !> what all of them would say the first one's words are enough.
-    function is_companion() result(yes)
-        logical :: yes
+    logical function is_companion() result(yes)
         character(len=*), parameter :: names(4) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', &
             'PMI_RANK', 'PMIX_RANK', 'SLURM_PROCID']
         character(len=12) :: rank

@@ -79,10 +79,9 @@ contains
     end subroutine write_full
 
     !> x 10**power as the nearest whole number, the even one of two: 10**16 or so.
-    pure function scaled(x, power) result(whole)
+    pure integer(int64) function scaled(x, power) result(whole)
         real(dp), intent(in) :: x       !! > 0
         integer, intent(in) :: power
-        integer(int64) :: whole
         integer, parameter :: exact = 22   !! 10**exact is a number of this kind
         real(dp) :: high, low, product, rest
         integer :: left, now
@@ -110,9 +109,8 @@ contains
     end function scaled
 
     !> a b - product, where that is small, exactly (Dekker 1971).
-    pure function left_out(a, b, product) result(rest)
+    pure real(dp) function left_out(a, b, product) result(rest)
         real(dp), intent(in) :: a, b, product
-        real(dp) :: rest
         real(dp), parameter :: splitter = 2.0_dp**27 + 1.0_dp
         real(dp) :: a_high, b_high
 

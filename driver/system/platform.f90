@@ -82,17 +82,14 @@ contains
         was_interrupted = .true.
     end subroutine note_interrupt
 
-    function interrupted() result(yes)
-        logical :: yes
-
+    logical function interrupted() result(yes)
         yes = was_interrupted
     end function interrupted
 
     !> Cuts a file to a length.
-    function truncate_file(path, length) result(done)
+    logical function truncate_file(path, length) result(done)
         character(len=*), intent(in) :: path
         integer(int64), intent(in) :: length   !! bytes
-        logical :: done
 
         done = c_truncate(path // c_null_char, length) == 0
     end function truncate_file
@@ -105,25 +102,21 @@ contains
     end subroutine remove_file
 
     !> Is standard error a terminal?
-    function is_terminal() result(terminal)
-        logical :: terminal
-
+    logical function is_terminal() result(terminal)
         terminal = c_isatty(2_c_int) == 1
     end function is_terminal
 
     !> Is there a directory of this name? Opened as a file, one looks like an empty file.
-    function is_directory(path) result(yes)
+    logical function is_directory(path) result(yes)
         character(len=*), intent(in) :: path
-        logical :: yes
 
         inquire (file=path // '/.', exist=yes)
     end function is_directory
 
     !> Makes a directory and those above it, where they do not exist; tells whether it can be
     !> written to.
-    function make_directory(path) result(made)
+    logical function make_directory(path) result(made)
         character(len=*), intent(in) :: path
-        logical :: made
         integer(c_int), parameter :: for_all = int(o'777', c_int)     ! less the user's umask
         integer(c_int), parameter :: write_and_search = 3_c_int       ! W_OK + X_OK of unistd.h
         integer :: i
@@ -187,17 +180,15 @@ contains
     end subroutine replace_program
 
     !> Gives a file another name; a file that had that name is replaced at once and whole.
-    function rename_file(from, to) result(renamed)
+    logical function rename_file(from, to) result(renamed)
         character(len=*), intent(in) :: from, to
-        logical :: renamed
 
         renamed = c_rename(from // c_null_char, to // c_null_char) == 0
     end function rename_file
 
     !> Is there a program of this name?
-    function have_command(name) result(found)
+    logical function have_command(name) result(found)
         character(len=*), intent(in) :: name
-        logical :: found
         integer :: status, started
 
         call execute_command_line('command -v ' // name // ' >/dev/null 2>&1', exitstat=status, &
@@ -206,8 +197,7 @@ contains
     end function have_command
 
     !> Processors that this process may use; at most 255 are told, the largest exit status.
-    function cores() result(n)
-        integer :: n
+    integer function cores() result(n)
         integer :: started
 
         n = 1   ! execute_command_line reads it too
@@ -226,8 +216,7 @@ contains
     end function shell_word
 
     !> Wall-clock time [s].
-    function seconds() result(time)
-        real(real64) :: time
+    real(real64) function seconds() result(time)
         integer(int64) :: count, rate
 
         call system_clock(count, rate)

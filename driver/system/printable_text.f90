@@ -63,9 +63,8 @@ contains
 
     !> Bytes of the character at the start, if it does not show: a control character, or in UTF-8 a
     !> blank, a joiner or a mark other than the ASCII blank.
-    pure function unseen(text) result(bytes)
+    pure integer function unseen(text) result(bytes)
         character(len=*), intent(in) :: text   !! not empty
-        integer :: bytes
         integer :: codes(3), i
 
         codes = 0

@@ -135,10 +135,9 @@ contains
     end subroutine plain_text
 
     !> Are these of the first bytes zero, and no others?
-    pure function has_zeros(bytes, zero) result(yes)
+    pure logical function has_zeros(bytes, zero) result(yes)
         character(len=*), intent(in) :: bytes
         logical, intent(in) :: zero(:)
-        logical :: yes
         integer :: i
 
         yes = len(bytes) >= size(zero)
@@ -146,9 +145,8 @@ contains
     end function has_zeros
 
     !> Has each character as many bytes as its first one says?
-    pure function is_utf8(bytes) result(yes)
+    pure logical function is_utf8(bytes) result(yes)
         character(len=*), intent(in) :: bytes
-        logical :: yes
         integer :: following, code, i
 
         following = 0

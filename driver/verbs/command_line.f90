@@ -136,9 +136,8 @@ contains
     end subroutine take_part
 
     !> From 1 to 9999; 0: it is none of these.
-    pure function whole_number(word) result(number)
+    pure integer function whole_number(word) result(number)
         character(len=*), intent(in) :: word
-        integer :: number
 
         number = 0
         if (len(word) == 0 .or. len(word) > 4 .or. verify(word, '0123456789') > 0) return

@@ -41,12 +41,11 @@ module run_in_memory
 
     abstract interface
         !> Of include/stickslip_program.h.
-        function watch_function(part, context) result(stop_now) bind(C)
+        integer(c_int) function watch_function(part, context) result(stop_now) bind(C)
             import :: c_double, c_int, c_ptr
             implicit none
             real(c_double), value, intent(in) :: part
             type(c_ptr), value, intent(in) :: context
-            integer(c_int) :: stop_now
         end function watch_function
     end interface
 
@@ -74,13 +73,12 @@ contains
     end subroutine tell_caller
 
     !> `stickslip_run` of include/stickslip_program.h.
-    function c_run(name, text, watch, context, result) result(status) &
+    integer(c_int) function c_run(name, text, watch, context, result) result(status) &
         bind(C, name='stickslip_run')
         type(c_ptr), value, intent(in) :: name, text   !! C texts
         type(c_funptr), value, intent(in) :: watch
         type(c_ptr), value, intent(in) :: context
         type(c_ptr), value, intent(in) :: result       !! place of a pointer
-        integer(c_int) :: status
         type(run_result), pointer :: this
         type(caller_watch), target :: caller
         procedure(watch_function), pointer :: watch_
@@ -242,14 +240,13 @@ contains
     end function c_groups
 
     !> `stickslip_columns` of include/stickslip_program.h.
-    function c_columns(content, bytes, n, names, result) result(status) &
+    integer(c_int) function c_columns(content, bytes, n, names, result) result(status) &
         bind(C, name='stickslip_columns')
         type(c_ptr), value, intent(in) :: content
         integer(c_int64_t), value, intent(in) :: bytes   !! of the content
         integer(c_int), value, intent(in) :: n           !! columns
         type(c_ptr), value, intent(in) :: names          !! of n C texts
         type(c_ptr), value, intent(in) :: result         !! place of a pointer
-        integer(c_int) :: status
         type(run_result), pointer :: this
         type(c_ptr), pointer :: name(:)
         type(column_request), allocatable :: requests(:)
@@ -306,11 +303,10 @@ contains
     end function letters_at
 
     !> `stickslip_table` of include/stickslip_program.h.
-    function c_table(result, table, rows, columns, names) result(values) &
+    type(c_ptr) function c_table(result, table, rows, columns, names) result(values) &
         bind(C, name='stickslip_table')
         type(c_ptr), value, intent(in) :: result, table
         type(c_ptr), value, intent(in) :: rows, columns, names   !! places; NULL: nobody asks
-        type(c_ptr) :: values
         type(memory_table), pointer :: found
         integer(c_int64_t), pointer :: to_rows
         integer(c_int), pointer :: to_columns
@@ -376,9 +372,8 @@ contains
     end subroutine find_table
 
     !> `stickslip_report` of include/stickslip_program.h.
-    function c_report(result, report) result(text) bind(C, name='stickslip_report')
+    type(c_ptr) function c_report(result, report) result(text) bind(C, name='stickslip_report')
         type(c_ptr), value, intent(in) :: result, report
-        type(c_ptr) :: text
         type(run_result), pointer :: this
 
         text = c_null_ptr

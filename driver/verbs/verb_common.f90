@@ -14,10 +14,9 @@ module verb_common
 contains
 
     !> Reads a file, or says why it cannot be read.
-    function is_readable(name, file) result(readable)
+    logical function is_readable(name, file) result(readable)
         character(len=*), intent(in) :: name
         type(namelist_file), intent(out) :: file
-        logical :: readable
         character(len=:), allocatable :: problem
 
         call read_namelist_file(name, file, problem)
@@ -26,10 +25,9 @@ contains
     end function is_readable
 
     !> Reads an input of a verb. One of another verb is told which one, and nothing else.
-    function is_for(verb, name, file) result(right)
+    logical function is_for(verb, name, file) result(right)
         character(len=*), intent(in) :: verb, name
         type(namelist_file), intent(out) :: file
-        logical :: right
         logical :: refused
 
         right = is_readable(name, file)
@@ -39,19 +37,17 @@ contains
     end function is_for
 
     !> Tells all faults of an input.
-    function has_faults(file) result(any_faults)
+    logical function has_faults(file) result(any_faults)
         type(namelist_file), intent(in) :: file
-        logical :: any_faults
 
         any_faults = size(file%faults) > 0
         if (any_faults) write (error_unit, '(a)', advance='no') file%describe_faults()
     end function has_faults
 
     !> Makes the directory of the output, or says why the results cannot go there.
-    function directory_is_ready(directory, stem, file) result(ready)
+    logical function directory_is_ready(directory, stem, file) result(ready)
         character(len=*), intent(in) :: directory, stem
         type(namelist_file), intent(in) :: file
-        logical :: ready
         character(len=:), allocatable :: problem
 
         call prepare_output(file, directory, stem, problem)
