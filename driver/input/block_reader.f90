@@ -82,6 +82,7 @@ contains
         type(chain), intent(inout) :: blocks
         type(rule) :: allowed
         real(dp) :: values(blocks%n_blocks)
+        integer, allocatable :: mine(:)   ! entries
         integer :: faults, place, i, k
 
         do k = 1, size(profiles)
@@ -101,10 +102,8 @@ contains
                 end do
                 call tell_more(file, faults)
                 if (faults > 0) then
-                    do i = 1, size(file%entries)
-                        if (file%entries(i)%group == this%group .and. file%entries(i)%key &
-                            == this%key) file%entries(i)%faulty = .true.
-                    end do
+                    call file%find(this%group, this%key, mine)
+                    file%entries(mine)%faulty = .true.
                 else
                     call put_number(file, this%group, this%key, mean(values))
                 end if
@@ -136,12 +135,8 @@ contains
 
     pure logical function all_alike(constants) result(yes)
         real(dp), intent(in) :: constants(:, :)   !! one row a block
-        integer :: place
 
-        yes = .true.
-        do place = 1, size(constants, 2)
-            yes = yes .and. .not. any(abs(constants(:, place) - constants(1, place)) > 0.0_dp)
-        end do
+        yes = .not. any(abs(constants - spread(constants(1, :), 1, size(constants, 1))) > 0.0_dp)
     end function all_alike
 
     !> Which profile is a key's? 0: none.
@@ -221,6 +216,7 @@ contains
         integer, intent(in) :: differing(:)
         type(chain), intent(in) :: blocks
         character(len=text_length) :: text
+        character(len=:), allocatable :: why
         integer :: i, place, culprit, status, faults
 
         faults = 0
@@ -230,8 +226,12 @@ contains
             faults = faults + 1
             if (faults > most_shown) cycle
             culprit = given_cause(table, place, differing)
-            call reject_block(file, trim(table%of(culprit)%name), scatter(culprit) > 0.0_dp, &
-                'block ' // whole_text(i) // ': ' // trim(text) // ', where ' // values_of(place))
+            why = 'block ' // whole_text(i) // ': ' // trim(text) // ', where ' // values_of(place)
+            if (scatter(culprit) > 0.0_dp) then
+                call file%reject(group, trim(table%of(culprit)%name) // '_scatter', why)
+            else
+                call file%reject('friction', trim(table%of(culprit)%name), why)
+            end if
         end do
         call tell_more(file, faults)
 
@@ -269,18 +269,6 @@ contains
             if (any(differing == others(k))) cause = others(k)
         end do
     end function given_cause
-
-    subroutine reject_block(file, name, scatters, why)
-        type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: name, why
-        logical, intent(in) :: scatters
-
-        if (scatters) then
-            call file%reject(group, name // '_scatter', why)
-        else
-            call file%reject('friction', name, why)
-        end if
-    end subroutine reject_block
 
     !> Leaves out the last constants as long as all blocks have their defaults: options that nobody
     !> asked for cost time.

@@ -36,13 +36,11 @@ contains
         type(namelist_file), intent(inout) :: file
         character(len=*), intent(in) :: group
         character(len=*), intent(in) :: names(:)
-        character(len=7), parameter :: ends(2) = ['_column', '_factor']
-        integer :: i, k
+        integer :: i
 
         do i = 1, size(names)
-            do k = 1, size(ends)
-                call file%refuse(group, trim(names(i)) // ends(k), 'needs a file')
-            end do
+            call file%refuse(group, trim(names(i)) // '_column', 'needs a file')
+            call file%refuse(group, trim(names(i)) // '_factor', 'needs a file')
         end do
     end subroutine refuse_column_keys
 

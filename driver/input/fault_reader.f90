@@ -188,6 +188,7 @@ contains
         type(namelist_file), intent(inout) :: file
         type(fault_plan), intent(inout) :: plan
         procedure(table_reader), optional :: read_netcdf
+        character(len=9), parameter :: columns(2) = ['traction ', 'slip_rate']
         character(len=:), allocatable :: how
         type(rule) :: moving
         logical :: sound, by_rate
@@ -204,13 +205,8 @@ contains
         call file%get_real(group, 'plate_rate', plan%plate_rate, at_least(0.0_dp))
         call file%require(group, 'initial_file')
         by_rate = plan%rate_state .and. allocated(plan%constants%z)   ! else the law is not known
-        if (by_rate) then
-            call read_map(file, group, 'initial_file', axes, ['traction ', 'slip_rate'], &
-                plan%initial, sound, read_netcdf)
-        else
-            call read_map(file, group, 'initial_file', axes, ['traction'], plan%initial, sound, &
-                read_netcdf)
-        end if
+        call read_map(file, group, 'initial_file', axes, columns(:merge(2, 1, by_rate)), &
+            plan%initial, sound, read_netcdf)
         if (.not. sound) return
         if (by_rate) then
             if (any(plan%initial%values(1, :, :) <= 0.0_dp)) call file%reject(group, &

@@ -207,10 +207,8 @@ contains
         character(len=*), intent(in) :: name
         integer :: i
 
-        known = .false.
-        do i = 1, size(self%groups)
-            if (self%groups(i)%name == name) known = self%groups(i)%known
-        end do
+        known = any([(self%groups(i)%name == name .and. self%groups(i)%known, i = 1, &
+            size(self%groups))])
     end function known_group
 
     !> The faults as lines of text, in the order of the file, up to a screenful.
@@ -247,14 +245,10 @@ contains
         class(content), intent(in) :: self
         character(len=*), intent(in) :: group, key
         integer, allocatable, intent(out) :: places(:)
-        logical, allocatable :: wanted(:)
         integer :: i
 
-        allocate (wanted(size(self%entries)))
-        do i = 1, size(self%entries)
-            wanted(i) = self%entries(i)%group == group .and. self%entries(i)%key == key
-        end do
-        places = pack([(i, i = 1, size(self%entries))], wanted)
+        places = pack([(i, i = 1, size(self%entries))], [(self%entries(i)%group == group &
+            .and. self%entries(i)%key == key, i = 1, size(self%entries))])
     end subroutine find
 
     !> Collects the values of a key in the order of their places, and says that the key is known.

@@ -18,6 +18,7 @@ module namelist_parser
     integer, parameter :: most_faults = 40                !! then the rest is not read
     integer, parameter :: most_groups = 100               !! likewise
     character(len=1), parameter :: line_feed = new_line('a')
+    character(len=*), parameter :: blanks = ' ' // achar(9) // line_feed
 
     type :: value_token
         character(len=:), allocatable :: text
@@ -87,8 +88,8 @@ contains
                 call read_entry(text, here, group, parsed)
             end if
             if (size(parsed%faults) >= most_faults .and. .not. parsed%broken) then
-                call add_fault(parsed, here%line, 'there are too many faults: what follows is ' &
-                    // 'not read')
+                call append_fault(parsed%faults, here%line, 'there are too many faults: what ' &
+                    // 'follows is not read')
                 parsed%broken = .true.
             end if
         end do
@@ -125,7 +126,7 @@ contains
         group = name
         do i = 1, size(parsed%groups)
             if (parsed%groups(i)%name /= group) cycle
-            call add_fault(parsed, here%line, 'group &' // group &
+            call append_fault(parsed%faults, here%line, 'group &' // group &
                 // ' is given twice, first in line ' // whole_text(parsed%groups(i)%line))
             exit
         end do
@@ -133,7 +134,8 @@ contains
         seen%line = here%line
         parsed%groups = [parsed%groups, seen]
         if (size(parsed%groups) <= most_groups) return
-        call add_fault(parsed, here%line, 'there are too many groups: what follows is not read')
+        call append_fault(parsed%faults, here%line, 'there are too many groups: what follows ' &
+            // 'is not read')
         parsed%broken = .true.
     end subroutine start_group
 
@@ -142,7 +144,8 @@ contains
         type(parsed_text), intent(inout) :: parsed
 
         associate (group => parsed%groups(size(parsed%groups)))
-            call add_fault(parsed, group%line, 'group &' // group%name // " is not ended by '/'")
+            call append_fault(parsed%faults, group%line, 'group &' // group%name &
+                // " is not ended by '/'")
         end associate
     end subroutine refuse_open_group
 
@@ -161,10 +164,10 @@ contains
         words = printable(text(here%at:last))
         here%at = last + 1
         if (here%line == ended_in) then
-            call add_fault(parsed, here%line, "text after the '/' that ends &" // group // ": '" &
-                // words // "' (a comment starts with '!')")
+            call append_fault(parsed%faults, here%line, "text after the '/' that ends &" &
+                // group // ": '" // words // "' (a comment starts with '!')")
         else if (here%line /= stray_in + 1) then
-            call add_fault(parsed, here%line, "text outside any group: '" // words // "'")
+            call append_fault(parsed%faults, here%line, "text outside any group: '" // words // "'")
         end if
         stray_in = here%line
     end subroutine refuse_stray_text
@@ -182,8 +185,8 @@ contains
         if (len(name) == 0) then
             name = word_at(text, here%at)
             if (len(name) == 0) name = text(here%at:here%at)
-            call add_fault(parsed, here%line, '&' // group // ": expected 'key = value', found '" &
-                // printable(name) // "'")
+            call append_fault(parsed%faults, here%line, '&' // group &
+                // ": expected 'key = value', found '" // printable(name) // "'")
             here%at = here%at + len(name)
             return
         end if
@@ -206,8 +209,8 @@ contains
                 + max(1, len(word_at(text, here%at)))
         end if
         entry%faulty = len(problem) > 0
-        if (entry%faulty) call add_fault(parsed, entry%line, '&' // group // ' ' // entry%key &
-            // ': ' // problem)
+        if (entry%faulty) call append_fault(parsed%faults, entry%line, '&' // group // ' ' &
+            // entry%key // ': ' // problem)
         if (.not. allocated(entry%values)) allocate (entry%values(0))
         call append(parsed, entry)
     end subroutine read_entry
@@ -215,16 +218,9 @@ contains
     subroutine append(parsed, entry)
         type(parsed_text), intent(inout) :: parsed
         type(namelist_entry), intent(in) :: entry
-        type(namelist_entry), allocatable :: more(:)
-        integer :: i
 
-        if (parsed%n_entries == size(parsed%entries)) then
-            allocate (more(2 * parsed%n_entries))
-            do i = 1, parsed%n_entries
-                more(i) = parsed%entries(i)
-            end do
-            call move_alloc(more, parsed%entries)
-        end if
+        if (parsed%n_entries == size(parsed%entries)) parsed%entries = [parsed%entries, &
+            parsed%entries]   ! room
         parsed%n_entries = parsed%n_entries + 1
         parsed%entries(parsed%n_entries) = entry
     end subroutine append
@@ -313,14 +309,12 @@ contains
         type(namelist_entry), intent(in) :: entry
         integer, intent(in) :: most
         character(len=:), allocatable, intent(inout) :: problem
-        character(len=80) :: text
         integer :: n
 
         n = size(entry%values)
         if (n > most) then
-            write (text, '(a, i0, a, i0, a)') 'has ', n, ' values for the ', most, &
-                ' places of its subscript'
-            problem = trim(text)
+            problem = 'has ' // whole_text(n) // ' values for the ' // whole_text(most) &
+                // ' places of its subscript'
         else if (entry%first + real(n - 1) * entry%stride > most_values) then
             problem = 'has values beyond place 1000000'
         end if
@@ -524,17 +518,14 @@ contains
         character(len=*), intent(in) :: text
         integer, intent(in) :: at
 
-        place = at
-        do while (place <= len(text))
-            if (.not. is_blank(text(place:place))) exit
-            place = place + 1
-        end do
+        place = verify(text(at:), blanks) + at - 1
+        if (place < at) place = len(text) + 1
     end function past_blanks
 
     pure logical function is_blank(c) result(blank)
         character(len=1), intent(in) :: c
 
-        blank = c == ' ' .or. c == achar(9) .or. c == line_feed
+        blank = scan(c, blanks) > 0
     end function is_blank
 
     !> The last character before the end of the line.
@@ -547,23 +538,15 @@ contains
 
     !> The name that starts here; empty if none does.
     pure function name_at(text, at) result(name)
-        character(len=*), intent(in) :: text
+        character(len=*), intent(in) :: text   !! ended by a line feed
         integer, intent(in) :: at
         character(len=:), allocatable :: name
         character(len=*), &
             parameter :: letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
-        integer :: i
 
-        i = at
-        if (i <= len(text)) then
-            if (index(letters, text(i:i)) > 0) then
-                do while (i <= len(text))
-                    if (index(letters // '0123456789_%', text(i:i)) == 0) exit
-                    i = i + 1
-                end do
-            end if
-        end if
-        name = text(at:i - 1)
+        name = ''
+        if (scan(text(at:at), letters) > 0) name = text(at:at - 2 + verify(text(at:), letters &
+            // '0123456789_%'))
     end function name_at
 
     !> Up to a blank, a comma, a comment, or a sign that ends the group.
@@ -571,20 +554,8 @@ contains
         character(len=*), intent(in) :: text   !! ended by a line feed
         integer, intent(in) :: at
         character(len=:), allocatable :: word
-        integer :: i
 
-        do i = at, len(text)
-            if (is_blank(text(i:i)) .or. index(',/!&$', text(i:i)) > 0) exit
-        end do
-        word = text(at:i - 1)
+        word = text(at:at - 2 + scan(text(at:), blanks // ',/!&$'))
     end function word_at
-
-    pure subroutine add_fault(parsed, line, text)
-        type(parsed_text), intent(inout) :: parsed
-        integer, intent(in) :: line
-        character(len=*), intent(in) :: text
-
-        call append_fault(parsed%faults, line, text)
-    end subroutine add_fault
 
 end module namelist_parser

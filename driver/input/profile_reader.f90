@@ -9,7 +9,6 @@ module profile_reader
     use grid_map, only : map_on_grid, nodes_up_to
     use lapack_interface, only : dlasrt
     use namelist_input, only : namelist_file
-    use namelist_parser, only : value_token
     use number_text, only : full_row
     use printable_text, only : lower
     implicit none
@@ -60,16 +59,10 @@ contains
         associate (entry => file%entries(i))
             if (size(entry%values) /= 1) return
             if (entry%group == 'friction' .or. (entry%group == group .and. entry%key &
-                == 'normal_traction')) yes = names_file(entry%values(1))
+                == 'normal_traction')) yes = entry%values(1)%quoted .and. &
+                index(entry%values(1)%text, '@') == 1 .and. len(entry%values(1)%text) > 1
         end associate
     end function names_profile
-
-    pure logical function names_file(token) result(yes)
-        type(value_token), intent(in) :: token
-
-        yes = .false.
-        if (token%quoted .and. len(token%text) > 1) yes = token%text(1:1) == '@'
-    end function names_file
 
     !> Does the input name a NetCDF file anywhere?
     pure logical function names_netcdf(file) result(yes)
@@ -78,10 +71,8 @@ contains
 
         yes = .false.
         do i = 1, size(file%entries)
-            if (size(file%entries(i)%values) /= 1) cycle
-            associate (value => file%entries(i)%values(1))
-                yes = yes .or. value%quoted .and. is_netcdf(value%text)
-            end associate
+            if (size(file%entries(i)%values) == 1) yes = yes .or. &
+                file%entries(i)%values(1)%quoted .and. is_netcdf(file%entries(i)%values(1)%text)
         end do
     end function names_netcdf
 

@@ -120,21 +120,15 @@ contains
         character(len=*), intent(in) :: values
         type(fault) :: new
         integer :: i, j
-        logical :: old, own
+        logical :: own
 
         do i = 1, size(more)
-            old = .false.
-            do j = 1, size(known)
-                old = old .or. (known(j)%line == more(i)%line .and. known(j)%text == more(i)%text)
-            end do
-            if (old) cycle
+            if (any([(known(j)%line == more(i)%line .and. known(j)%text == more(i)%text, j = 1, &
+                size(known))])) cycle
             known = [known, more(i)]
             new = more(i)
-            own = .false.
-            do j = 1, size(axes)
-                own = own .or. index(new%text, '&' // axes(j)%group // ' ' // axes(j)%key &
-                    // ' = ') == 1
-            end do
+            own = any([(index(new%text, '&' // axes(j)%group // ' ' // axes(j)%key // ' = ') &
+                == 1, j = 1, size(axes))])
             if (len(values) > 0 .and. .not. own) new%text = new%text // ' (at ' // values // ')'
             faults = [faults, new]
         end do
