@@ -188,11 +188,10 @@ contains
         end associate
     end function dies_away
 
-    !> At which rate the contact's ringing dies away, by the damper and by fixed steps.
-    pure function ringing_decay(run, swing) result(rate)
+    !> At which rate the contact's ringing dies away, by the damper and by fixed steps [1/T].
+    pure real(dp) function ringing_decay(run, swing) result(rate)
         type(settings), intent(in) :: run
         real(dp), intent(in) :: swing   !! [1/T]
-        real(dp) :: rate                !! [1/T]
         real(dp) :: x, step_part
 
         rate = 0.5_dp * run%damping / run%mass

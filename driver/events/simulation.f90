@@ -7,8 +7,7 @@ module simulation
     use chain_observer, only : chain_watch
     use chain_settings, only : displaced, load_factors
     use energies, only : energy_balance, take_stock
-    use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, &
-        statev_u_et
+    use friction_mod, only : friction_message, friction_snap_back, prop_alpha_n, statev_u_et
     use initial_states, only : displace, initial_state, place
     use integrator_choice, only : choose_integrator
     use number_text, only : rounded_text

@@ -225,12 +225,11 @@ contains
     end function limit
 
     !> Velocity at which a block follows friction that falls with the normal traction: as the drive
-    !> spring gives way, but no more than the whole fall can accelerate it to.
-    pure function freed(self, now, dt) result(v)
+    !> spring gives way, but no more than the whole fall can accelerate it to [L/T].
+    pure real(dp) function freed(self, now, dt) result(v)
         class(event_finder), intent(in) :: self
         type(moment), intent(in) :: now
         real(dp), intent(in) :: dt   !! since `held` [T]
-        real(dp) :: v                !! [L/T]
 
         v = 0.0_dp
         if (now%holds >= self%held) return
@@ -239,11 +238,11 @@ contains
             / self%impedance)
     end function freed
 
-    !> By how much does the force at a turn within a step exceed those at its ends? An excess larger
-    !> than the change in a step is refused: velocities at the ends of long steps are uncertain.
-    pure function beyond(before, now, turn) result(excess)
+    !> By how much does the force at a turn within a step exceed those at its ends [F]? An excess
+    !> larger than the change in a step is refused: velocities at the ends of long steps are
+    !> uncertain.
+    pure real(dp) function beyond(before, now, turn) result(excess)
         type(moment), intent(in) :: before, now, turn
-        real(dp) :: excess   !! [F]
 
         excess = max(turn%force - max(before%force, now%force), &
             min(before%force, now%force) - turn%force)
@@ -278,11 +277,10 @@ contains
         end if
     end subroutine look
 
-    !> Round-off of the force, which is a difference of two positions.
-    pure function uncertainty(self, now) result(force)
+    !> Round-off of the force, which is a difference of two positions [F].
+    pure real(dp) function uncertainty(self, now) result(force)
         class(event_finder), intent(in) :: self
         type(moment), intent(in) :: now
-        real(dp) :: force   !! [F]
 
         force = 4.0_dp * epsilon(force) * (abs(now%force) + self%stiffness * abs(now%drive))
     end function uncertainty

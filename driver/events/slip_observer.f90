@@ -186,11 +186,10 @@ contains
         if (yes) yes = old%time > self%drive%start(i) .or. is_gradual(self%drive, i)
     end function drops
 
-    !> The friction of such a step before: the contact spring went with the block.
-    pure function held(self, old, new) result(force)
+    !> The friction of such a step before: the contact spring went with the block [F].
+    pure real(dp) function held(self, old, new) result(force)
         class(slip_watch), intent(in) :: self
         type(slider_state), intent(in) :: old, new
-        real(dp) :: force   !! [F]
 
         force = old%friction(1) + self%area * self%law%alpha_t * (new%x(1) - old%x(1))
     end function held
@@ -317,24 +316,22 @@ contains
             - old%time) / (new%time - old%time), new%normal)
     end subroutine find_turn
 
-    !> Friction of a block that slides without contact spring, from its friction coefficient.
-    pure function sliding(self, state, load, way) result(force)
+    !> Friction of a block that slides without contact spring, from its friction coefficient [F].
+    pure real(dp) function sliding(self, state, load, way) result(force)
         class(slip_watch), intent(in) :: self
         type(slider_state), intent(in) :: state
         real(dp), intent(in) :: load   !! normal traction [F/L^2]
         real(dp), intent(in) :: way    !! with the sense of its slip
-        real(dp) :: force              !! [F]
 
         force = sign(self%area * strength_at(self%law, state%statev(1, statev_mu), load), way)
     end function sliding
 
-    !> Friction coefficient in the sense of the loading of a piece.
-    pure function over_load(self, i, force, load) result(friction)
+    !> Friction coefficient in the sense of the loading of a piece [-].
+    pure real(dp) function over_load(self, i, force, load) result(friction)
         class(slip_watch), intent(in) :: self
         integer, intent(in) :: i          !! piece
         real(dp), intent(in) :: force     !! of friction [F]
         real(dp), intent(in) :: load      !! normal traction [F/L^2]
-        real(dp) :: friction              !! [-]
 
         friction = force / (self%area * load)
         if (abs(friction) > 0.0_dp) friction = self%sense(i) * friction   ! no -0 in a table

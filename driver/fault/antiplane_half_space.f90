@@ -38,14 +38,12 @@ module antiplane_half_space
 
 contains
 
-    !> Traction per unit of slip `d` cells away, without the image.
-    elemental function antiplane_kernel(shear_modulus, height, d) result(k)
+    !> Traction per unit of slip `d` cells away, without the image [F/L^3].
+    elemental real(dp) function antiplane_kernel(shear_modulus, height, d) result(k)
         real(dp), intent(in) :: shear_modulus, height
         integer, intent(in) :: d
-        real(dp) :: k   !! [F/L^3]
 
-        k = shear_modulus / (2.0_dp * pi * height) * (1.0_dp / (d - 0.5_dp) - 1.0_dp &
-            / (d + 0.5_dp))
+        k = shear_modulus / (2.0_dp * pi * height) * (1.0_dp / (d - 0.5_dp) - 1.0_dp / (d + 0.5_dp))
     end function antiplane_kernel
 
     subroutine create(self, part, shear_modulus, height)

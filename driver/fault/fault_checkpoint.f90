@@ -59,10 +59,9 @@ contains
     end subroutine write_checkpoint
 
     !> Bytes before a row of a column.
-    pure function place_of(part, n_header, column, row) result(bytes)
+    pure integer(int64) function place_of(part, n_header, column, row) result(bytes)
         type(slab), intent(in) :: part
         integer, intent(in) :: n_header, column, row   !! column and row from 0
-        integer(int64) :: bytes
 
         bytes = word * (fixed_words + n_header + int(part%nx, int64) * (int(part%nz, int64) &
             * column + row))
@@ -113,10 +112,9 @@ contains
     end subroutine read_checkpoint
 
     !> Exclusive or of all words, each mixed with its place.
-    pure function sum_of_cells(part, columns) result(total)
+    pure integer(int64) function sum_of_cells(part, columns) result(total)
         type(slab), intent(in) :: part
         real(dp), intent(in) :: columns(:, :)
-        integer(int64) :: total
         integer(int64) :: before
         integer :: i, j
 
@@ -129,9 +127,8 @@ contains
         end do
     end function sum_of_cells
 
-    pure function sum_of_header(header) result(total)
+    pure integer(int64) function sum_of_header(header) result(total)
         real(dp), intent(in) :: header(:)
-        integer(int64) :: total
         integer :: i
 
         total = 0
@@ -141,9 +138,8 @@ contains
     end function sum_of_header
 
     !> Bits of a word, turned and mixed by its place.
-    pure function scrambled(bits, place) result(mixed)
+    pure integer(int64) function scrambled(bits, place) result(mixed)
         integer(int64), intent(in) :: bits, place
-        integer(int64) :: mixed
 
         mixed = ieor(bits, ishftc(place, 17))
         mixed = ieor(mixed, shiftl(mixed, 13))

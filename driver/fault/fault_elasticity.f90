@@ -50,9 +50,8 @@ contains
 
     !> The least even length from `n` on that Fourier transforms take fast: no prime factor
     !> beyond 7.
-    pure function good_length(n) result(length)
+    pure integer function good_length(n) result(length)
         integer, intent(in) :: n
-        integer :: length
         integer, parameter :: primes(4) = [2, 3, 5, 7]
         integer :: rest, i
 
@@ -84,19 +83,17 @@ contains
         self%rows = self%counts(together%rank + 1)
     end subroutine divide
 
-    pure function cells(self)
+    pure integer function cells(self)
         class(slab), intent(in) :: self
-        integer :: cells
 
         cells = self%nx * self%rows
     end function cells
 
     !> The sum over all cells of all processes, row after row: the same on any number of them.
-    function row_sums(self, together, values) result(total)
+    real(dp) function row_sums(self, together, values) result(total)
         class(slab), intent(in) :: self
         type(team), intent(in) :: together
         real(dp), intent(in) :: values(self%nx, self%rows)
-        real(dp) :: total
         real(dp) :: own(self%rows)
         integer :: i, k
 
@@ -110,11 +107,10 @@ contains
     end function row_sums
 
     !> The sum of a number of each row.
-    function sum_of_rows(self, together, own) result(total)
+    real(dp) function sum_of_rows(self, together, own) result(total)
         class(slab), intent(in) :: self
         type(team), intent(in) :: together
         real(dp), intent(in) :: own(:)   !! of this process's rows
-        real(dp) :: total
         real(dp) :: all_rows(self%nz)
         integer :: k
 

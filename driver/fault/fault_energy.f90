@@ -29,9 +29,8 @@ module fault_energy
 contains
 
     !> What the balance is open by, over the most that has passed through it.
-    pure function unbalanced(self) result(part)
+    pure real(dp) function unbalanced(self) result(part)
         class(energies), intent(in) :: self
-        real(dp) :: part
 
         part = abs(self%loading - self%elastic - self%dissipated - self%radiated) &
             / max(abs(self%loading), abs(self%elastic), self%dissipated + self%radiated, &

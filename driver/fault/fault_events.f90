@@ -85,13 +85,12 @@ contains
 
     !> When the first cell exceeds the seismic rate in a step, or the last one no longer does: by
     !> the cubic of its slip, whose rate comes to a rate between those of both ends once.
-    function crossing_time(here, together, before, state, falls) result(time)
+    real(dp) function crossing_time(here, together, before, state, falls) result(time)
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         type(step_start), intent(in) :: before
         type(fault_state), intent(in) :: state   !! at the end of the step
         logical, intent(in) :: falls             !! the largest rate does
-        real(dp) :: time
         real(dp) :: dt, part(here%n)
 
         dt = state%time - before%time
@@ -108,9 +107,8 @@ contains
 
     !> Part of a step after which its rate is a number between those of its ends, the rate being
     !> the parabola that these and their mean tell.
-    elemental function part_until(first, last, mean, rate) result(part)
+    elemental real(dp) function part_until(first, last, mean, rate) result(part)
         real(dp), intent(in) :: first, last, mean, rate
-        real(dp) :: part
         real(dp) :: a, b, c, q
 
         a = 3.0_dp * (first + last - 2.0_dp * mean)
@@ -124,9 +122,8 @@ contains
     end function part_until
 
     !> The largest rate of that parabola in the step.
-    elemental function largest_within(first, last, mean) result(rate)
+    elemental real(dp) function largest_within(first, last, mean) result(rate)
         real(dp), intent(in) :: first, last, mean
-        real(dp) :: rate
         real(dp) :: a, b
 
         a = 3.0_dp * (first + last - 2.0_dp * mean)
@@ -136,12 +133,11 @@ contains
     end function largest_within
 
     !> Number of the cell, from 1, along strike first; of several the first one.
-    function fastest_cell(here, together, state, rate) result(number)
+    integer(int64) function fastest_cell(here, together, state, rate) result(number)
         type(fault), intent(in) :: here
         type(team), intent(in) :: together
         type(fault_state), intent(in) :: state
         real(dp), intent(in) :: rate   !! the largest
-        integer(int64) :: number
 
         number = huge(number)
         if (any(state%rate >= rate)) number = findloc(state%rate >= rate, .true., dim=1) &

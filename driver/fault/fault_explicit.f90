@@ -82,9 +82,8 @@ contains
         call start_rate_state(here, together, state, problem)
     end subroutine start_explicit
 
-    pure function columns(self) result(n)
+    pure integer function columns(self) result(n)
         class(explicit_steps), intent(in) :: self
-        integer :: n
 
         n = 2
     end function columns
@@ -270,10 +269,9 @@ contains
     end subroutine try_step
 
     !> Where the rates of a stage are.
-    pure function place(self, stage)
+    pure integer function place(self, stage)
         class(explicit_steps), intent(in) :: self
         integer, intent(in) :: stage
-        integer :: place
 
         place = stage
         if (stage == 1) place = self%first_stage

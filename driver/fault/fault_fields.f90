@@ -100,20 +100,18 @@ contains
     end subroutine save
 
     !> Of all records so far.
-    pure function bytes(self, here) result(total)
+    pure integer(int64) function bytes(self, here) result(total)
         class(fault_field_file), intent(in) :: self
         type(fault), intent(in) :: here
-        integer(int64) :: total
 
         total = self%parts%records * field_record_bytes(int(here%plan%nx, int64) * here%plan%nz, &
             size(names))
     end function bytes
 
     !> What one process has found is so for all; the first one's places are.
-    function agree(self, together) result(failed)
+    logical function agree(self, together) result(failed)
         class(fault_field_file), intent(inout) :: self
         type(team), intent(in) :: together
-        logical :: failed
         real(dp) :: places(size(self%parts%places))
 
         places = real(self%parts%places, dp)   ! exact below 9e15

@@ -75,9 +75,8 @@ contains
         self%mode = 0.0_dp * state%slip + 1.0_dp
     end subroutine start_implicit
 
-    pure function columns(self) result(n)
+    pure integer function columns(self) result(n)
         class(implicit_steps), intent(in) :: self
-        integer :: n
 
         n = 6 + statev_size
     end function columns
@@ -261,8 +260,7 @@ contains
             if (sound) exit
             if (iteration > 5 .and. misfit > 0.9_dp * before) exit
             before = misfit
-            compliance = max(1.0_dp - self%tangent(:, 2, 2) / self%stiffness, &
-                least_compliance)
+            compliance = max(1.0_dp - self%tangent(:, 2, 2) / self%stiffness, least_compliance)
             call solve_minres(here, together, self%tangent(:, 2, 2) / compliance + here%damping &
                 * lead, residual, 1.0e-3_dp, x, definite)
             call here%surroundings%apply(together, x, elastic)

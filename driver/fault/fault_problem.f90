@@ -156,11 +156,10 @@ contains
     end subroutine add_powers
 
     !> Elastic energy of a state, without that of the start.
-    function elastic_energy(self, together, state) result(energy)
+    real(dp) function elastic_energy(self, together, state) result(energy)
         class(fault), intent(in) :: self
         type(team), intent(in) :: together
         type(fault_state), intent(in) :: state
-        real(dp) :: energy
 
         energy = -0.5_dp * self%plan%cell_area() * self%part%row_sums(together, (state%slip &
             - self%plan%plate_rate * state%time) * (state%traction + self%damping * state%rate &
@@ -168,10 +167,9 @@ contains
     end function elastic_energy
 
     !> Number of the cell around a point, among those of this process; 0: another process has it.
-    pure function cell_of(self, x, z) result(cell)
+    pure integer function cell_of(self, x, z) result(cell)
         class(fault), intent(in) :: self
         real(dp), intent(in) :: x, z   !! [L]
-        integer :: cell
         integer :: i, k
 
         i = min(self%plan%nx, 1 + int((x + 0.5_dp * self%plan%length) / self%plan%dx()))

@@ -185,9 +185,8 @@ contains
         end do
     end subroutine write_rows
 
-    elemental function log10_of(rate) result(number)
+    elemental real(dp) function log10_of(rate) result(number)
         real(dp), intent(in) :: rate
-        real(dp) :: number
 
         number = log10(max(abs(rate), 1.0e-300_dp))
     end function log10_of
@@ -280,9 +279,8 @@ contains
         end do
     end subroutine finish
 
-    function failed(self)
+    logical function failed(self)
         class(recorder), intent(in) :: self
-        logical :: failed
 
         failed = self%global%failed .or. self%events%failed .or. self%contours%failed &
             .or. any(self%stations%failed)

@@ -286,8 +286,7 @@ contains
                 trim(adjustl(rounded_text(energy%unbalanced(), 8, 1))), ' of the largest'
         end associate
         write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
-        write (report, '(3a)') 'results        ', live%base, &
-            '_events.csv, _global.csv and others'
+        write (report, '(3a)') 'results        ', live%base, '_events.csv, _global.csv and others'
     end subroutine print_summary
 
     function text_of(number) result(text)

@@ -75,8 +75,7 @@ contains
             end if
             call read_surface(here%props(cell, :), surface, status)
             traction = here%prestress(cell) - here%damping * state%rate(cell)
-            state%memory(cell) = state_of(surface, traction, here%pressure(cell), &
-                state%rate(cell))
+            state%memory(cell) = state_of(surface, traction, here%pressure(cell), state%rate(cell))
             if (abs(ln_rate(surface, traction, here%pressure(cell), state%memory(cell)) &
                 - log(state%rate(cell))) <= tolerance .and. traction * (1.0_dp &
                 - epsilon(traction) / tolerance) <= surface%tau_max) cycle
@@ -122,11 +121,10 @@ contains
     end subroutine tell_refused_cell
 
     !> Whether a cell starts as the one before it does: its state is then known.
-    pure function is_like_the_last(here, rate, cell) result(yes)
+    pure logical function is_like_the_last(here, rate, cell) result(yes)
         type(fault), intent(in) :: here
         real(dp), intent(in) :: rate(:)
         integer, intent(in) :: cell
-        logical :: yes
 
         yes = cell > 1
         if (yes) yes = all(abs(here%props(cell, :) - here%props(cell - 1, :)) <= 0.0_dp)
@@ -251,10 +249,9 @@ contains
     end subroutine slide_to_steady_state
 
     !> ln(slip rate) of a cell under a traction, without damping.
-    function ln_rate(surface, traction, pressure, ln_theta) result(ln_v)
+    real(dp) function ln_rate(surface, traction, pressure, ln_theta) result(ln_v)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, ln_theta
-        real(dp) :: ln_v
         real(dp) :: rate
         logical :: jumps
 
@@ -263,19 +260,17 @@ contains
         ln_v = log(max(rate, tiny(rate)))
     end function ln_rate
 
-    pure function load_of(traction, pressure) result(load)
+    pure type(load_rates) function load_of(traction, pressure) result(load)
         real(dp), intent(in) :: traction, pressure
-        type(load_rates) :: load
 
         load = load_rates(traction=traction, loading=0.0_dp, stiffness=1.0_dp, pressure=pressure, &
             pressure_rate=0.0_dp, sliding=.true.)
     end function load_of
 
     !> The state that slides at a rate under a traction. ln(rate) is a straight line in ln(theta).
-    function state_of(surface, traction, pressure, rate) result(ln_theta)
+    real(dp) function state_of(surface, traction, pressure, rate) result(ln_theta)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, rate
-        real(dp) :: ln_theta
         real(dp), parameter :: rough = 1.0e-2_dp, round_off = 1.0e-9_dp
         real(dp) :: before, ln_v, ln_v_before
         integer :: iteration
@@ -290,8 +285,7 @@ contains
         do iteration = 1, 20
             ln_v = ln_rate(surface, traction, pressure, ln_theta)
             if (.not. abs(ln_v - ln_v_before) > 0.0_dp) exit
-            call swap_in(ln_theta - (ln_v - log(rate)) * (ln_theta - before) &
-                / (ln_v - ln_v_before))
+            call swap_in(ln_theta - (ln_v - log(rate)) * (ln_theta - before) / (ln_v - ln_v_before))
             if (abs(ln_theta - before) <= 1.0e-15_dp * abs(ln_theta)) exit
         end do
 
@@ -308,11 +302,10 @@ contains
     end function state_of
 
     !> Where the state does not change any more at a slip rate.
-    function ln_steady_state(surface, traction, pressure, rate, tolerance) result(ln_theta)
+    real(dp) function ln_steady_state(surface, traction, pressure, rate, tolerance) result(ln_theta)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: traction, pressure, rate
         real(dp), intent(in) :: tolerance   !! of ln(theta)
-        real(dp) :: ln_theta
         type(law_state) :: change
         real(dp) :: low, high
 
@@ -332,10 +325,9 @@ contains
     end function ln_steady_state
 
     !> Traction of steady sliding, under the cap if there is one.
-    function steady_traction(surface, pressure, rate) result(traction)
+    real(dp) function steady_traction(surface, pressure, rate) result(traction)
         type(sliding_surface), intent(in) :: surface
         real(dp), intent(in) :: pressure, rate
-        real(dp) :: traction
         real(dp), parameter :: most = 1.0e300_dp   !! [F/L^2]
         real(dp) :: low, high, ln_theta
         integer :: halving

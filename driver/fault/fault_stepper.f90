@@ -44,11 +44,10 @@ module fault_stepper
         end subroutine begin_interface
 
         !> How many columns a checkpoint needs.
-        pure function columns_interface(self) result(n)
+        pure integer function columns_interface(self) result(n)
             import :: stepper
             implicit none
             class(stepper), intent(in) :: self
-            integer :: n
         end function columns_interface
 
         !> Puts all that the steps need into a checkpoint, or takes it from there.

@@ -40,9 +40,7 @@ module processes
 contains
 
     !> Is this one of several processes, which know nothing of each other?
-    function lacks_mpi() result(yes)
-        logical :: yes
-
+    logical function lacks_mpi() result(yes)
         yes = .false.
     end function lacks_mpi
 
@@ -72,8 +70,7 @@ contains
     end subroutine end
 
     !> Has a launcher of MPI started this process? Their ways of telling so.
-    function is_launched() result(yes)
-        logical :: yes
+    logical function is_launched() result(yes)
         character(len=*), parameter :: names(6) = [character(len=20) :: 'OMPI_COMM_WORLD_SIZE', &
             'PMI_RANK', 'PMI_SIZE', 'PMIX_RANK', 'MPI_LOCALRANKID', 'SLURM_STEP_NUM_TASKS']
         integer :: i, status
@@ -86,10 +83,9 @@ contains
     end function is_launched
 
     !> The largest of all processes' numbers.
-    function largest(self, x) result(most)
+    real(dp) function largest(self, x) result(most)
         class(team), intent(in) :: self
         real(dp), intent(in) :: x
-        real(dp) :: most
 
         most = x
         if (self%members > 1) call mpi_allreduce(x, most, 1, mpi_double_precision, mpi_max, &
@@ -108,30 +104,27 @@ contains
     end subroutine largest_of_each
 
     !> The lowest of all processes' whole numbers.
-    function lowest(self, i) result(least)
+    integer(int64) function lowest(self, i) result(least)
         class(team), intent(in) :: self
         integer(int64), intent(in) :: i
-        integer(int64) :: least
 
         least = i
         if (self%members > 1) call mpi_allreduce(i, least, 1, mpi_integer8, mpi_min, mpi_comm_world)
     end function lowest
 
     !> Exclusive or of all processes' words.
-    function xor_of(self, bits) result(all_bits)
+    integer(int64) function xor_of(self, bits) result(all_bits)
         class(team), intent(in) :: self
         integer(int64), intent(in) :: bits
-        integer(int64) :: all_bits
 
         all_bits = bits
         if (self%members > 1) call mpi_allreduce(bits, all_bits, 1, mpi_integer8, mpi_bxor, &
             mpi_comm_world)
     end function xor_of
 
-    function any_of(self, yes) result(any_one)
+    logical function any_of(self, yes) result(any_one)
         class(team), intent(in) :: self
         logical, intent(in) :: yes
-        logical :: any_one
 
         any_one = yes
         if (self%members > 1) call mpi_allreduce(yes, any_one, 1, mpi_logical, mpi_lor, &

@@ -39,8 +39,7 @@ module netcdf_interface
             integer(c_int), intent(out) :: variable
         end function nc_inq_varid
 
-        integer(c_int) function nc_inq_vartype(file, variable, type) &
-            bind(C, name='nc_inq_vartype')
+        integer(c_int) function nc_inq_vartype(file, variable, type) bind(C, name='nc_inq_vartype')
             import :: c_int
             implicit none
             integer(c_int), value, intent(in) :: file, variable
@@ -62,8 +61,7 @@ module netcdf_interface
             integer(c_int), intent(out) :: dimensions(*)
         end function nc_inq_vardimid
 
-        integer(c_int) function nc_inq_dimlen(file, dimension, length) &
-            bind(C, name='nc_inq_dimlen')
+        integer(c_int) function nc_inq_dimlen(file, dimension, length) bind(C, name='nc_inq_dimlen')
             import :: c_int, c_size_t
             implicit none
             integer(c_int), value, intent(in) :: file, dimension

@@ -4,8 +4,7 @@
 !> x(node), z(node) and a(node). Dimensions of one place do not count.
 module netcdf_table
     use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-    use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_null_char, c_ptr, &
-        c_size_t
+    use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_null_char, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use csv_table, only : column_request, line_text, table
     use number_reader, only : largest

@@ -19,8 +19,7 @@ module processes
 contains
 
     !> Is this one of several processes, which know nothing of each other?
-    function lacks_mpi() result(yes)
-        logical :: yes
+    logical function lacks_mpi() result(yes)
         character(len=20), parameter :: names(2) = ['OMPI_COMM_WORLD_SIZE', 'PMI_SIZE            ']
         character(len=12) :: members
         integer :: i, status
@@ -45,10 +44,9 @@ contains
     end subroutine end
 
     !> The largest of all processes' numbers.
-    function largest(self, x) result(most)
+    real(dp) function largest(self, x) result(most)
         class(team), intent(in) :: self
         real(dp), intent(in) :: x
-        real(dp) :: most
 
         most = x
     end function largest
@@ -62,27 +60,24 @@ contains
     end subroutine largest_of_each
 
     !> The lowest of all processes' whole numbers.
-    function lowest(self, i) result(least)
+    integer(int64) function lowest(self, i) result(least)
         class(team), intent(in) :: self
         integer(int64), intent(in) :: i
-        integer(int64) :: least
 
         least = i
     end function lowest
 
     !> Exclusive or of all processes' words.
-    function xor_of(self, bits) result(all_bits)
+    integer(int64) function xor_of(self, bits) result(all_bits)
         class(team), intent(in) :: self
         integer(int64), intent(in) :: bits
-        integer(int64) :: all_bits
 
         all_bits = bits
     end function xor_of
 
-    function any_of(self, yes) result(any_one)
+    logical function any_of(self, yes) result(any_one)
         class(team), intent(in) :: self
         logical, intent(in) :: yes
-        logical :: any_one
 
         any_one = yes
     end function any_of

@@ -25,12 +25,11 @@ module whole_space
 
 contains
 
-    !> Traction at (x, z) per unit of slip on a cell around (0, 0).
-    elemental function whole_space_kernel(shear_modulus, poisson, dx, dz, x, z) result(k)
+    !> Traction at (x, z) per unit of slip on a cell around (0, 0) [F/L^3].
+    elemental real(dp) function whole_space_kernel(shear_modulus, poisson, dx, dz, x, z) result(k)
         real(dp), intent(in) :: shear_modulus, poisson
         real(dp), intent(in) :: dx, dz   !! size of the cell [L]
         real(dp), intent(in) :: x, z     !! never at an edge of the cell [L]
-        real(dp) :: k                    !! [F/L^3]
 
         k = shear_modulus / (4.0_dp * pi) * (corner(x + 0.5_dp * dx, z + 0.5_dp * dz) &
             - corner(x - 0.5_dp * dx, z + 0.5_dp * dz) - corner(x + 0.5_dp * dx, z - 0.5_dp * dz) &
@@ -38,9 +37,8 @@ contains
 
     contains
 
-        pure function corner(xc, zc) result(share)
+        pure real(dp) function corner(xc, zc) result(share)
             real(dp), intent(in) :: xc, zc
-            real(dp) :: share
             real(dp) :: r
 
             r = sqrt(xc**2 + zc**2)

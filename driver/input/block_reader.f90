@@ -162,8 +162,7 @@ contains
         do place = prop_law + 1, table%n
             if (table%of(place)%whole) cycle
             key = trim(table%of(place)%name) // '_scatter'
-            call file%get_real(group, key, scatter(place), between(0.0_dp, 0.99_dp), &
-                default=0.0_dp)
+            call file%get_real(group, key, scatter(place), between(0.0_dp, 0.99_dp), default=0.0_dp)
             if (scatter(place) > 0.0_dp .and. n_blocks == 1) call file%reject(group, key, &
                 'needs two or more blocks')
         end do

@@ -34,8 +34,7 @@ contains
     !> Without a file there are no columns.
     subroutine refuse_column_keys(file, group, names)
         type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group
-        character(len=*), intent(in) :: names(:)
+        character(len=*), intent(in) :: group, names(:)
         integer :: i
 
         do i = 1, size(names)
@@ -47,8 +46,7 @@ contains
     !> A factor needs its column.
     subroutine check_factors(file, group, names, table)
         type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group
-        character(len=*), intent(in) :: names(:)
+        character(len=*), intent(in) :: group, names(:)
         type(csv), intent(inout) :: table
         integer :: i
 

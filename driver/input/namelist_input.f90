@@ -242,8 +242,7 @@ contains
 
     pure subroutine read_logical(text, value, is_logical)
         character(len=*), intent(in) :: text
-        logical, intent(out) :: value
-        logical, intent(out) :: is_logical
+        logical, intent(out) :: value, is_logical
         character(len=7), parameter :: yes(6) = [character(len=7) :: '.true.', '.true', '.t.', &
             '.t', 'true', 't']
         character(len=7), parameter :: no(6) = [character(len=7) :: '.false.', '.false', '.f.', &

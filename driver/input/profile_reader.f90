@@ -14,8 +14,7 @@ module profile_reader
     implicit none
     private
 
-    public :: joined, names_netcdf, names_profile, profile, put_number, read_map, &
-        take_profiles
+    public :: joined, names_netcdf, names_profile, profile, put_number, read_map, take_profiles
 
     !> A quantity that a file gives at nodes.
     type :: profile
@@ -144,8 +143,7 @@ contains
 
     subroutine refuse_nodes(file, group, key, axes)
         type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group, key
-        character(len=*), intent(in) :: axes(2)
+        character(len=*), intent(in) :: group, key, axes(2)
 
         if (axes(1) == '') then
             call file%reject(group, key, 'its file must have each ' // trim(axes(2)) // ' once')
@@ -158,9 +156,7 @@ contains
 
     subroutine read_columns(file, group, key, axes, names, read_in, read_netcdf)
         type(namelist_file), intent(inout) :: file
-        character(len=*), intent(in) :: group, key
-        character(len=*), intent(in) :: axes(2)
-        character(len=*), intent(in) :: names(:)
+        character(len=*), intent(in) :: group, key, axes(2), names(:)
         type(csv), intent(out) :: read_in
         procedure(table_reader), optional :: read_netcdf
         type(column_request) :: requests(size(names) + 2)
@@ -204,8 +200,7 @@ contains
 
     subroutine fill_map(read_in, axes, names, map, whole)
         type(csv), intent(in) :: read_in
-        character(len=*), intent(in) :: axes(2)
-        character(len=*), intent(in) :: names(:)
+        character(len=*), intent(in) :: axes(2), names(:)
         type(map_on_grid), intent(inout) :: map
         logical, intent(out) :: whole   !! no node is missing because another stands twice
         integer :: columns(size(names)), along(2), i, j, k, row

@@ -61,8 +61,7 @@ contains
         call file%get_real('events', 'drop', run%event_drop, above(0.0_dp), default=1.0e-3_dp)
         if (file%given('events', 'slip_rate')) call file%get_real('events', 'slip_rate', &
             run%event_slip_rate, above(0.0_dp))
-        call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), &
-            default=10.0_dp)
+        call file%get_real('output', 'table_limit', run%table_limit, above(0.0_dp), default=10.0_dp)
         call read_units(file, run%units)
         call read_rows(file, run)
         call file%get_real('output', 'checkpoint', run%checkpoint, at_least(0.0_dp), &
@@ -199,8 +198,7 @@ contains
             call file%get_real(group, 'r', start%r, between(0.0_dp, 1.0_dp), default=0.0_dp)
             if (start%has_r) then
                 key = 'r'
-                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), &
-                    default=law%virgin_mu)
+                call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=law%virgin_mu)
                 if (alike .and. (start%mu < law%kinetic_coefficient .or. start%mu &
                     > law%largest_coefficient)) call file%reject(group, 'mu', &
                     'must be from mu_k to mu_s')

@@ -1,8 +1,7 @@
 !> Where the work of the drive goes: held by springs, contacts and motion, or lost.
 module energies
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_u_et, &
-        statev_u_n
+    use friction_mod, only : prop_alpha_n, prop_alpha_t, statev_dissipation, statev_u_et, statev_u_n
     use slider_system, only : slider, slider_state
     use step_sums, only : block_sums
     implicit none
@@ -86,10 +85,9 @@ contains
             * system%carried_pressure(state%statev(1, statev_u_n))**2 / system%props(prop_alpha_n)
     end subroutine take_stock_across
 
-    !> Held by the springs, the contact and the motion together.
-    pure function held(self) result(total)
+    !> Held by the springs, the contact and the motion together [F L].
+    pure real(dp) function held(self) result(total)
         class(energy_balance), intent(in) :: self
-        real(dp) :: total   !! [F L]
 
         total = self%kinetic + self%spring + self%contact
     end function held

@@ -63,28 +63,25 @@ contains
         if (self%geometry /= 'antiplane_half') area = area * self%dx()
     end function cell_area
 
-    !> Radiation damping, G/(2 c_s).
-    pure function damping(self)
+    !> Radiation damping, G/(2 c_s) [F T/L^3].
+    pure real(dp) function damping(self)
         class(fault_plan), intent(in) :: self
-        real(dp) :: damping   !! [F T/L^3]
 
         damping = 0.5_dp * self%shear_modulus / self%wave_speed
     end function damping
 
-    !> Centre of a cell along strike, from the middle of the fault.
-    elemental function x_of(self, i) result(x)
+    !> Centre of a cell along strike, from the middle of the fault [L].
+    elemental real(dp) function x_of(self, i) result(x)
         class(fault_plan), intent(in) :: self
         integer, intent(in) :: i   !! 1 to nx
-        real(dp) :: x              !! [L]
 
         x = (i - 0.5_dp) * (self%length / self%nx) - 0.5_dp * self%length
     end function x_of
 
-    !> Centre of a cell in depth, from the upper edge.
-    elemental function z_of(self, k) result(z)
+    !> Centre of a cell in depth, from the upper edge [L].
+    elemental real(dp) function z_of(self, k) result(z)
         class(fault_plan), intent(in) :: self
         integer, intent(in) :: k   !! 1 to nz
-        real(dp) :: z              !! [L]
 
         z = (k - 0.5_dp) * (self%width / self%nz)
     end function z_of

@@ -81,12 +81,10 @@ contains
         end do
         if (values%has_r) state%statev(:, statev_r) = values%r
         state%friction = mu * pressure
-        if (values%has_r) state%friction = values%r * (state%friction + cohesions(system, &
-            size(mu)))
+        if (values%has_r) state%friction = values%r * (state%friction + cohesions(system, size(mu)))
         state%friction = system%area * state%friction
         state%statev(:, statev_u_et) = state%friction / (system%area * alpha_t)
-        state%spring = sum(state%friction) / size(state%friction) &
-            + system%damping * values%velocity
+        state%spring = sum(state%friction) / size(state%friction) + system%damping * values%velocity
         if (values%spring_given) state%spring = values%spring_force
         state%drive = state%x(1) + state%spring(1) / system%stiffness
         call set_accelerations(system, state)

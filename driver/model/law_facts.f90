@@ -35,11 +35,10 @@ contains
     end function internal_variable
 
     !> What stands for the strength of the contact under a pressure: static friction, or that of
-    !> steady sliding at the reference rate, and cohesion.
-    pure function typical_strength(props, pressure) result(strength)
+    !> steady sliding at the reference rate, and cohesion [F/L^2].
+    pure real(dp) function typical_strength(props, pressure) result(strength)
         real(dp), intent(in) :: props(:)   !! constants of the friction routine
         real(dp), intent(in) :: pressure   !! >= 0 [F/L^2]
-        real(dp) :: strength               !! [F/L^2]
         type(facts) :: law
 
         law = friction_facts(props)
@@ -56,12 +55,11 @@ contains
         strength = min(law%shear_cap, mu * pressure + law%cohesion)
     end function strength_at
 
-    !> How much the logarithm of what a law remembers falls with that of the pressure.
+    !> How much the logarithm of what a law remembers falls with that of the pressure [-].
     !> Of several blocks it is the largest.
-    pure function pressure_effect(props, constants) result(effect)
+    pure real(dp) function pressure_effect(props, constants) result(effect)
         real(dp), intent(in) :: props(:)                    !! constants of the friction routine
         real(dp), intent(in), optional :: constants(:, :)   !! of each block, one row a block
-        real(dp) :: effect                                  !! [-]
 
         effect = maxval(pressure_effects(props, constants))
     end function pressure_effect

@@ -37,11 +37,10 @@ contains
         if (size(self%start) > 1) i = max(1, nodes_up_to(self%start, t))
     end function piece
 
-    !> How far the drive has moved by time `t`.
-    pure function position(self, t) result(x)
+    !> How far the drive has moved by time `t` [L].
+    pure real(dp) function position(self, t) result(x)
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
-        real(dp) :: x               !! [L]
         real(dp) :: since
         integer :: i
 
@@ -51,12 +50,11 @@ contains
     end function position
 
     !> Velocity of the drive at time `t`, as piece `i` has it: at the end of that piece or inside
-    !> it.
-    pure function drive_velocity(self, t, i) result(v)
+    !> it [L/T].
+    pure real(dp) function drive_velocity(self, t, i) result(v)
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
         integer, intent(in) :: i
-        real(dp) :: v               !! [L/T]
 
         v = self%velocity(i) + self%acceleration(i) * (t - self%start(i))
     end function drive_velocity
@@ -74,18 +72,16 @@ contains
             + self%amplitude * sin(two_pi * self%frequency * t + self%phase)
     end function normal_traction
 
-    !> The largest normal traction of all pieces.
-    pure function largest_normal(self) result(p)
+    !> The largest normal traction of all pieces [F/L^2].
+    pure real(dp) function largest_normal(self) result(p)
         class(programme), intent(in) :: self
-        real(dp) :: p               !! [F/L^2]
 
         p = maxval(self%normal) + self%amplitude
     end function largest_normal
 
-    !> Mean velocity in the first piece in which the drive moves; 0 if it never does.
-    pure function first_velocity(self) result(v)
+    !> Mean velocity in the first piece in which the drive moves; 0 if it never does [L/T].
+    pure real(dp) function first_velocity(self) result(v)
         class(programme), intent(in) :: self
-        real(dp) :: v               !! [L/T]
         integer :: i
 
         v = 0.0_dp
@@ -97,11 +93,10 @@ contains
         end do
     end function first_velocity
 
-    !> When the piece that holds at time `t` ends; never, for the last one.
-    pure function next_start(self, t) result(t_next)
+    !> When the piece that holds at time `t` ends; never, for the last one [T].
+    pure real(dp) function next_start(self, t) result(t_next)
         class(programme), intent(in) :: self
         real(dp), intent(in) :: t   !! [T]
-        real(dp) :: t_next          !! [T]
         integer :: i
 
         i = self%piece(t)

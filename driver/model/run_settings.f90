@@ -49,10 +49,9 @@ module run_settings
 
 contains
 
-    !> The least fall of the drive spring's force that makes an event, of one block.
-    pure function event_force(self) result(force)
+    !> The least fall of the drive spring's force that makes an event, of one block [F].
+    pure real(dp) function event_force(self) result(force)
         class(settings), intent(in) :: self
-        real(dp) :: force   !! [F]
 
         force = self%event_drop * self%area * typical_strength(self%props, &
             self%drive%largest_normal())
@@ -95,10 +94,9 @@ contains
         end do
     end function loading_sense
 
-    !> The first multiple of `every` after a time; huge if there is none.
-    pure function next_row(every, time) result(next)
+    !> The first multiple of `every` after a time; huge if there is none [T].
+    pure real(dp) function next_row(every, time) result(next)
         real(dp), intent(in) :: every, time   !! [T]
-        real(dp) :: next                      !! [T]
         real(dp) :: n
 
         next = huge(next)

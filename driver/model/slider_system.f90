@@ -109,44 +109,40 @@ contains
         yes = self%mass > 0.0_dp
     end function free
 
-    !> Force of drive spring and damper away from the base.
-    pure function force(self, stretch, u_n, v_n)
+    !> Force of drive spring and damper away from the base [F].
+    pure real(dp) function force(self, stretch, u_n, v_n)
         class(normal_motion), intent(in) :: self
         real(dp), intent(in) :: stretch   !! of the drive spring along the interface [L]
         real(dp), intent(in) :: u_n       !! [L]
         real(dp), intent(in) :: v_n       !! [L/T]
-        real(dp) :: force                 !! [F]
 
         force = self%tilt * stretch - self%stiffness * (u_n - self%rest) - self%damping * v_n
     end function force
 
-    !> Force of the drive spring along the interface, of a block at x that stands at u_n.
-    elemental function pull(self, drive, x, u_n) result(force)
+    !> Force of the drive spring along the interface, of a block at x that stands at u_n [F].
+    elemental real(dp) function pull(self, drive, x, u_n) result(force)
         class(slider), intent(in) :: self
         real(dp), intent(in) :: drive, x, u_n   !! [L]
-        real(dp) :: force                       !! [F]
 
         force = self%stiffness * (drive - x)
         if (self%across%mass > 0.0_dp) force = force - self%across%tilt * (u_n - self%across%rest)
     end function pull
 
-    !> Force on a block away from the base, but for the contact's.
-    pure function push(self, drive, load, x, u_n, v_n) result(force)
+    !> Force on a block away from the base, but for the contact's [F].
+    pure real(dp) function push(self, drive, load, x, u_n, v_n) result(force)
         class(slider), intent(in) :: self
         real(dp), intent(in) :: drive       !! [L]
         real(dp), intent(in) :: load        !! normal traction of the programme [F/L^2]
         real(dp), intent(in) :: x, u_n      !! [L]
         real(dp), intent(in) :: v_n         !! [L/T]
-        real(dp) :: force                   !! [F]
 
         force = self%across%force(drive - x, u_n, v_n) - self%area * load
     end function push
 
-    !> Pressure in a contact that stands at u_n.
-    pure function carried_pressure(self, u_n) result(pressure)
+    !> Pressure in a contact that stands at u_n [F/L^2].
+    pure real(dp) function carried_pressure(self, u_n) result(pressure)
         class(slider), intent(in) :: self
         real(dp), intent(in) :: u_n   !! [L]
-        real(dp) :: pressure          !! [F/L^2]
 
         pressure = max(0.0_dp, -self%props(prop_alpha_n) * u_n)
     end function carried_pressure

@@ -115,8 +115,7 @@ contains
                 contact%traction / contact%pressure]
         end associate
         row(5) = self%result%verdict
-        if (self%result%verdict /= undecided) row(6:7) = [self%result%growth, &
-            self%result%frequency]
+        if (self%result%verdict /= undecided) row(6:7) = [self%result%growth, self%result%frequency]
         do i = 1, criticals
             row(7 + i) = self%critical(i)%closest_to(abs(self%this%value_of( &
                 trim(critical_keys(i)))))

@@ -95,14 +95,11 @@ contains
         class(memory_table), intent(inout) :: self
         character(len=*), intent(in) :: columns   !! names, with commas between them
         integer, parameter :: first_rows = 256
-        integer :: n, i
+        integer :: commas, i
 
-        n = 1
-        do i = 1, len(columns)
-            if (columns(i:i) == ',') n = n + 1
-        end do
+        commas = count([(columns(i:i) == ',', i = 1, len(columns))])
         self%columns = columns // c_null_char   ! C reads it too
-        allocate (self%values(n, first_rows))
+        allocate (self%values(commas + 1, first_rows))
     end subroutine start_table
 
     subroutine add(self, row)

@@ -3,11 +3,10 @@ module piece_table
     use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_programme, only : programme
-    use number_text, only : full_row
     use piece_measures, only : piece_effects, read_off
     use run_outcome, only : event_totals, outcome
     use run_settings, only : settings
-    use text_file, only : output_file
+    use text_file, only : write_numbers
     implicit none
     private
 
@@ -81,20 +80,10 @@ contains
         type(settings), intent(in) :: run
         type(outcome), intent(in) :: result
         logical, intent(out) :: written        !! or there is nothing to write
-        type(output_file) :: file
-        real(dp), allocatable :: rows(:, :)
-        integer :: i
 
         written = .true.
-        if (run%drive%listed == 1) return
-        rows = piece_rows(run, result)
-        call file%create(name)
-        call file%write_line(piece_columns)
-        do i = 1, size(rows, 2)
-            call file%write_line(full_row(rows(:, i)))
-        end do
-        call file%finish()
-        written = .not. file%failed
+        if (run%drive%listed > 1) call write_numbers(name, piece_columns, piece_rows(run, result), &
+            written)
     end subroutine write_pieces
 
 end module piece_table

@@ -10,7 +10,7 @@ module recorder
         row_clock, series_columns, series_row, series_size
     use run_settings, only : settings
     use slider_system, only : slider_state
-    use text_file, only : gigabyte, output_file
+    use text_file, only : gigabyte, output_file, write_numbers
     use thinned_series, only : thinned
     implicit none
     private
@@ -35,7 +35,7 @@ module recorder
     contains
         procedure :: prepare, open, begin, see, finish, visit
         procedure :: flush_all, failed, picture_file
-        procedure, private :: tell_loss, write_state, write_chain_events, write_thinned
+        procedure, private :: tell_loss, write_state, write_chain_events
     end type csv_recorder
 
 contains
@@ -127,13 +127,18 @@ contains
         class(csv_recorder), intent(inout) :: self
         type(slider_state), intent(in) :: last
         type(step_news), intent(inout) :: news
+        logical :: written
 
         call self%write_chain_events(news)
         if (.not. self%clock%shown) call self%write_state(last)
         call self%series%finish()
         call self%events%finish()
         call self%fields%save()
-        if (self%rows > self%picture%kept()) call self%write_thinned()
+        if (self%rows > self%picture%kept()) then
+            call write_numbers(self%base // '_picture.csv', self%columns, &
+                self%picture%rows(:, :self%picture%kept()), written)
+            self%series%failed = self%series%failed .or. .not. written
+        end if
         if (self%failed()) call news%stop_run('cannot write the last rows (disk full?)')
     end subroutine finish
 
@@ -163,20 +168,6 @@ contains
         name = self%base(index(self%base, '/', back=.true.) + 1:) // '.csv'
         if (self%rows > self%picture%kept()) name = name(:len(name) - 4) // '_picture.csv'
     end function picture_file
-
-    subroutine write_thinned(self)
-        class(csv_recorder), intent(inout) :: self
-        type(output_file) :: file
-        integer :: i
-
-        call file%create(self%base // '_picture.csv')
-        call file%write_line(self%columns)
-        do i = 1, self%picture%kept()
-            call file%write_line(full_row(self%picture%rows(:, i)))
-        end do
-        call file%finish()
-        self%series%failed = self%series%failed .or. file%failed
-    end subroutine write_thinned
 
     subroutine flush_all(self)
         class(csv_recorder), intent(inout) :: self

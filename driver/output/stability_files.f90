@@ -9,7 +9,7 @@ module stability_files
     use stability_map, only : plane_map
     use steady_answers, only : answer_columns, critical_keys, criticals, n_numbers, steady_answer
     use steady_sliding, only : sliding_case
-    use text_file, only : output_file
+    use text_file, only : output_file, write_numbers
     use unit_names, only : units
     implicit none
     private
@@ -110,8 +110,9 @@ contains
         character(len=*), intent(in) :: base
         type(plane_map), intent(in) :: map
         character(len=:), allocatable, intent(out) :: problem
-        type(output_file) :: grid, boundary
+        type(output_file) :: grid
         character(len=:), allocatable :: keys
+        logical :: written
         integer :: i, j
 
         keys = map%axes(1)%name // ',' // map%axes(2)%name
@@ -125,14 +126,9 @@ contains
             end do
         end do
         call grid%finish()
-        call boundary%create(base // '_boundary.csv')
-        call boundary%write_line(keys // ',frequency')
-        do i = 1, size(map%boundary, 2)
-            call boundary%write_line(full_row(map%boundary(:, i)))
-        end do
-        call boundary%finish()
+        call write_numbers(base // '_boundary.csv', keys // ',frequency', map%boundary, written)
         problem = ''
-        if (grid%failed .or. boundary%failed) problem = 'cannot write ' // base &
+        if (grid%failed .or. .not. written) problem = 'cannot write ' // base &
             // '_map.csv and _boundary.csv (disk full?)'
     end subroutine write_map
 

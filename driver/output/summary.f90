@@ -61,8 +61,7 @@ contains
                 trim(per_step(result%iterations, result%steps)), ' a step', most, &
                 result%most_iterations
         end if
-        if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', &
-            result%rejected
+        if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', result%rejected
         if (result%snap_backs > 0) write (report, '(a, i0, 3a)') 'snap-back          ', &
             result%snap_backs, ' steps saw several equilibria: take a smaller ', &
             trim(merge('rtol', 'dt  ', run%adaptive)), ' or a larger alpha_t'

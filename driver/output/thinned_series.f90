@@ -68,7 +68,8 @@ contains
         class(thinned), intent(inout) :: self
         integer, intent(in) :: first, last, after
         logical :: wanted(first:last)
-        integer :: i, n
+        integer, allocatable :: chosen(:)
+        integer :: i
 
         wanted = .false.
         associate (force => self%rows(self%force, first:last), &
@@ -80,12 +81,8 @@ contains
         do i = first, last   ! some may be the same
             if (count(wanted) < kept_rows) wanted(i) = .true.
         end do
-        n = after
-        do i = first, last
-            if (.not. wanted(i)) cycle
-            n = n + 1
-            self%rows(:, n) = self%rows(:, i)
-        end do
+        chosen = pack([(i, i = first, last)], wanted)
+        self%rows(:, after + 1:after + size(chosen)) = self%rows(:, chosen)
     end subroutine choose
 
     !> Reads or writes what has to be kept for a run that is resumed.

@@ -1,15 +1,15 @@
 !> Files for results, line by line, through the C library: gfortran's own output takes a full
 !> disk for success.
 module text_file
-    use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_null_ptr, c_ptr, &
-        c_size_t
+    use, intrinsic :: iso_c_binding, only : c_associated, c_null_char, c_null_ptr, c_ptr, c_size_t
     use, intrinsic :: iso_fortran_env, only : dp => real64, int64
     use c_library, only : c_fclose, c_fflush, c_fopen, c_fwrite
+    use number_text, only : full_row
     use platform, only : truncate_file
     implicit none
     private
 
-    public :: end_of_file, output_file
+    public :: end_of_file, output_file, write_numbers
 
     real(dp), parameter, public :: gigabyte = 1.0e9_dp   !! [bytes]
 
@@ -97,6 +97,23 @@ contains
         last = index(tail, new_line('a'), back=.true.)
         if (last > 0) done = truncate_file(name, length - len(tail) + last)
     end subroutine cut_to_whole_lines
+
+    !> Writes a table of numbers as a file of its own.
+    subroutine write_numbers(name, header, rows, written)
+        character(len=*), intent(in) :: name, header
+        real(dp), intent(in) :: rows(:, :)   !! column, row
+        logical, intent(out) :: written      !! all of it
+        type(output_file) :: file
+        integer :: i
+
+        call file%create(name)
+        call file%write_line(header)
+        do i = 1, size(rows, 2)
+            call file%write_line(full_row(rows(:, i)))
+        end do
+        call file%finish()
+        written = .not. file%failed
+    end subroutine write_numbers
 
     !> The last bytes of a file; none if it cannot be read.
     subroutine end_of_file(name, most, tail, length)

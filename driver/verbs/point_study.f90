@@ -14,8 +14,7 @@ module point_study
     use progress_bar, only : progress
     use result_files, only : of_run, remove_results
     use run_pictures, only : draw_point
-    use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, tell_failure
+    use verb_common, only : directory_is_ready, exit_bad_input, has_faults, is_for, tell_failure
     implicit none
     private
 
@@ -71,11 +70,7 @@ contains
         if (records%file%failed .and. len(result%failure) == 0) result%failure = &
             'at its end: cannot write the last rows (disk full?)'
         if (.not. wanted%quiet) call print_summary(point, result, base // '.csv')
-        exit_status = exit_done
-        if (len(result%failure) > 0) then
-            call tell_failure(wanted%input, result%failure, base)
-            exit_status = exit_failed
-        end if
+        call tell_failure(wanted%input, result%failure, base, exit_status)
         if (.not. wanted%plot .or. interrupted()) return
         call draw_point(run, wanted%output, wanted%stem, problem)
         if (len(problem) > 0) write (error_unit, '(2a)') 'stickslip: ', problem

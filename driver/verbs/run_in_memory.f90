@@ -33,8 +33,7 @@ module run_in_memory
     !> What a run, or the analysis of steady sliding, leaves. Texts end with a null character.
     type :: run_result
         type(memory_watch) :: found
-        type(memory_table) :: pieces, summary
-        type(memory_table) :: steady, eigenvalues
+        type(memory_table) :: pieces, summary, steady, eigenvalues
         type(memory_table) :: columns   !! of a file
         character(len=:), allocatable :: faults, failure, warnings, reasons, text, groups
     end type run_result

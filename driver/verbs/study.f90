@@ -18,8 +18,7 @@ module study
     use simulation, only : simulate, simulation_run, start_run
     use summary, only : print_event_times, print_summary, print_warnings
     use table_size, only : check_table_size
-    use verb_common, only : directory_is_ready, exit_bad_input, exit_done, exit_failed, &
-        has_faults, is_for, tell_failure
+    use verb_common, only : directory_is_ready, exit_bad_input, has_faults, is_for, tell_failure
     implicit none
     private
 
@@ -74,11 +73,7 @@ contains
         call print_warnings(wanted%input, run, result)
         if (len(result%failure) == 0) call remove_file(base // '.checkpoint')
         if (wanted%verify .and. len(result%failure) == 0) call verify_events(run, result)
-        exit_status = exit_done
-        if (len(result%failure) > 0) then
-            call tell_failure(wanted%input, result%failure, base)
-            exit_status = exit_failed
-        end if
+        call tell_failure(wanted%input, result%failure, base, exit_status)
         if (wanted%plot .and. .not. result%interrupted) call draw_pictures(wanted, run, &
             records%picture_file(), result)
     end subroutine run_input

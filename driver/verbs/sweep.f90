@@ -62,8 +62,7 @@ contains
             write (error_unit, '(2a)') 'stickslip: ', problem
             return
         end if
-        if (wanted%parts == 1) call remove_results(wanted%output // '/' // &
-            wanted%stem, of_sweep)
+        if (wanted%parts == 1) call remove_results(wanted%output // '/' // wanted%stem, of_sweep)
         mine = is_mine(wanted, size(rows))
         found = count_rows(pack(rows, mine))
         call run_all(plan, wanted, mine, done, rows, problem)
@@ -299,29 +298,23 @@ contains
         problem = 'cannot write ' // base // '.csv (disk full?)'
     end subroutine write_table
 
-    pure function count_rows(rows) result(n)
+    pure integer function count_rows(rows) result(n)
         type(line_text), intent(in) :: rows(:)
-        integer :: n, i
+        integer :: i
 
-        n = 0
-        do i = 1, size(rows)
-            if (len(rows(i)%text) > 0) n = n + 1
-        end do
+        n = count([(len(rows(i)%text) > 0, i = 1, size(rows))])
     end function count_rows
 
     !> Combinations among `mine` whose results start with a text.
-    pure function count_rows_with(plan, rows, start, mine) result(n)
+    pure integer function count_rows_with(plan, rows, start, mine) result(n)
         type(sweep_plan), intent(in) :: plan
         type(line_text), intent(in) :: rows(:)
         character(len=*), intent(in) :: start
         logical, intent(in) :: mine(:)
-        integer :: n, i
+        integer :: i
 
-        n = 0
-        do i = 1, size(rows)
-            if (.not. mine(i)) cycle
-            if (index(rows(i)%text, point_text(plan%point(i)) // start) == 1) n = n + 1
-        end do
+        n = count([(mine(i) .and. index(rows(i)%text, point_text(plan%point(i)) // start) == 1, &
+            i = 1, size(rows))])
     end function count_rows_with
 
     subroutine print_summary(wanted, base, combinations, found, failures)

@@ -55,10 +55,15 @@ contains
         if (.not. ready) write (error_unit, '(a)') problem
     end function directory_is_ready
 
-    subroutine tell_failure(input, failure, base)
-        character(len=*), intent(in) :: input, failure
-        character(len=*), intent(in) :: base   !! of the names of the files that were written
+    !> The exit status of a run; tells why it failed, if it did.
+    subroutine tell_failure(input, failure, base, exit_status)
+        character(len=*), intent(in) :: input
+        character(len=*), intent(in) :: failure   !! empty if there was none
+        character(len=*), intent(in) :: base      !! of the names of the files that were written
+        integer, intent(out) :: exit_status
 
+        exit_status = merge(exit_done, exit_failed, len(failure) == 0)
+        if (exit_status == exit_done) return
         write (error_unit, '(4a)') 'stickslip: ', input, ': the run failed ', failure
         write (error_unit, '(3a)') '  what was computed so far is in ', base, '.csv'
     end subroutine tell_failure
