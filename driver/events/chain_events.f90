@@ -105,9 +105,7 @@ contains
 
         joined = self%over_seam(n_blocks)
         if (joined) joined = .not. self%events(1)%under_way
-        associate (all => self%events(:self%count))
-            ended = pack(all, .not. all%under_way)
-        end associate
+        ended = pack(self%events(:self%count), .not. self%events(:self%count)%under_way)
         if (size(ended) == 0) return
         self%events(:self%count - size(ended)) = pack(self%events(:self%count), &
             self%events(:self%count)%under_way)

@@ -42,12 +42,9 @@ contains
         call file%get_real(group, 'normal_amplitude', drive%amplitude, at_least(0.0_dp), &
             default=0.0_dp)
         call file%get_real(group, 'normal_phase', drive%phase, any_number(), default=0.0_dp)
-        if (drive%amplitude > 0.0_dp) then
-            call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp))
-        else
-            call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp), &
-                default=1.0_dp)
-        end if
+        if (drive%amplitude > 0.0_dp) call file%require(group, 'normal_frequency')
+        call file%get_real(group, 'normal_frequency', drive%frequency, above(0.0_dp), &
+            default=1.0_dp)
         if (file%given(group, 'normal_amplitude')) return
         call file%refuse(group, 'normal_frequency', 'needs a normal_amplitude')
         call file%refuse(group, 'normal_phase', 'needs a normal_amplitude')
@@ -75,13 +72,10 @@ contains
         n = max(size(velocity), size(normal), size(duration))
         call check_length('velocity', size(velocity))
         call check_length('normal', size(normal))
-        if (size(duration) /= n .and. n > 1) then
-            call file%reject(group, 'duration', 'must have ' // counted(n) &
-                // ', one for each piece')
-        end if
-        if (change == 'ramp' .and. size(duration) == 0) then
-            call file%reject(group, 'normal_change', "needs the key duration with 'ramp'")
-        end if
+        if (size(duration) /= n .and. n > 1) call file%reject(group, 'duration', 'must have ' &
+            // counted(n) // ', one for each piece')
+        if (change == 'ramp' .and. size(duration) == 0) call file%reject(group, 'normal_change', &
+            "needs the key duration with 'ramp'")
         if (size(file%faults) > faults_before) return
 
         if (size(velocity) < n) velocity = [(velocity(1), i = 1, n)]

@@ -109,9 +109,8 @@ contains
                     call tell_node(file, faults_before, profiles, x(i), z(k))
                     return
                 end if
-                if (.not. allocated(plan%constants%values)) then
-                    allocate (plan%constants%values(size(props) + 1, size(x), size(z)))
-                end if
+                if (.not. allocated(plan%constants%values)) allocate ( &
+                    plan%constants%values(size(props) + 1, size(x), size(z)))
                 plan%constants%values(:, i, k) = [props, normal]
                 associate (known => friction_facts(props))
                     plan%rate_state = known%traits%logarithmic

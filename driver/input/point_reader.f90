@@ -57,9 +57,8 @@ contains
         faults_before = size(file%faults)
         call file%get_reals(group, 'duration', duration, at_least(0.0_dp))
         call file%get_reals(group, 'steps', steps, at_least(1.0_dp))
-        if (any(abs(steps - anint(steps)) > 0.0_dp .or. steps > real(huge(1), dp))) then
-            call file%reject(group, 'steps', 'must be whole numbers that can be counted to')
-        end if
+        if (any(abs(steps - anint(steps)) > 0.0_dp .or. steps > real(huge(1), dp))) call &
+            file%reject(group, 'steps', 'must be whole numbers that can be counted to')
         n = size(duration)
         if (.not. file%given(group, 'file')) then
             call file%require(group, 'duration')

@@ -211,9 +211,8 @@ contains
                 call file%refuse(group, 'r', 'belongs to the law subloading')
             end if
             if (.not. allocated(run%drive%normal)) return
-            if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) then
-                call file%reject(group, key, 'must be 0 where the normal traction starts at 0')
-            end if
+            if (start%r > 0.0_dp .and. run%drive%normal_traction(0.0_dp, 1) <= 0.0_dp) call &
+                file%reject(group, key, 'must be 0 where the normal traction starts at 0')
             if (.not. alike) return
             if (start%r * (start%mu * run%drive%normal_traction(0.0_dp, 1) + merge(law%cohesion, &
                 0.0_dp, start%has_r)) > law%shear_cap) then
@@ -244,9 +243,8 @@ contains
         if (size(file%faults) > faults_before .or. .not. min(run%dt, run%t_end) > 0.0_dp) return
         if (run%dt > run%t_end) call file%reject(group, 'dt', 'must not exceed t_end')
         if (run%adaptive) return
-        if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) then
-            call file%reject(group, 'dt', 'makes more steps up to t_end than can be counted')
-        end if
+        if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) call file%reject(group, 'dt', &
+            'makes more steps up to t_end than can be counted')
         if (size(file%faults) > faults_before) return
         steps = run%t_end / run%dt
         run%n_steps = nint(steps)
