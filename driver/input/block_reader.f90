@@ -157,8 +157,7 @@ contains
         character(len=:), allocatable :: key
         integer :: place
 
-        allocate (scatter(table%n))
-        scatter = 0.0_dp
+        allocate (scatter(table%n), source=0.0_dp)
         do place = prop_law + 1, table%n
             if (table%of(place)%whole) cycle
             key = trim(table%of(place)%name) // '_scatter'

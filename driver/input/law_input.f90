@@ -32,8 +32,7 @@ contains
             call read_law(file, number)
         end if
         table = friction_constants(number)
-        allocate (props(table%n))
-        props = 0.0_dp
+        allocate (props(table%n), source=0.0_dp)
         props(prop_law) = number
         do place = prop_law + 1, table%n
             call read_constant(file, table%of(place), place, props)

@@ -140,8 +140,7 @@ contains
             return
         end if
         if (abs(normal - state%normal) <= 1.0e-14_dp * abs(normal)) return
-        allocate (zero(size(state%x)), tangent(size(state%x)))
-        zero = 0.0_dp
+        allocate (zero(size(state%x)), tangent(size(state%x)), source=0.0_dp)
         old = state%statev
         call friction_forces(system, old, normal, zero, 0.0_dp, state%statev, state%friction, &
             tangent, status)

@@ -34,15 +34,9 @@ contains
         integer, intent(out) :: status           !! of the friction routine
         real(dp), allocatable :: tangent(:), zero(:), virgin(:, :)
 
-        allocate (zero(n_blocks), tangent(n_blocks), virgin(n_blocks, statev_size))
-        zero = 0.0_dp
-        virgin = 0.0_dp
-        state%x = zero
-        state%v = zero
-        state%a = zero
-        state%spring = zero
-        state%friction = zero
-        state%statev = virgin
+        allocate (zero(n_blocks), tangent(n_blocks), state%x(n_blocks), state%v(n_blocks), &
+            state%a(n_blocks), state%spring(n_blocks), state%friction(n_blocks), source=0.0_dp)
+        allocate (virgin(n_blocks, statev_size), state%statev(n_blocks, statev_size), source=0.0_dp)
         state%normal = normal
         state%load = normal
         call friction_forces(system, virgin, normal, zero, 0.0_dp, state%statev, &

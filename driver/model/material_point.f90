@@ -49,11 +49,9 @@ contains
         real(dp) :: nothing(ndir)
 
         point%props = props
-        allocate (point%u(ndir), point%traction(ndir), point%tangent(ndir, ndir))
+        allocate (point%u(ndir), point%traction(ndir), source=0.0_dp)
+        allocate (point%tangent(ndir, ndir), source=0.0_dp)
         nothing = 0.0_dp
-        point%u = 0.0_dp
-        point%traction = 0.0_dp
-        point%tangent = 0.0_dp
         call friction_update(nothing, 0.0_dp, props, point%statev, point%traction, point%tangent, &
             status)
     end subroutine virgin_point

@@ -1,4 +1,6 @@
-!> Procedures of the C library that the program calls.
+!> Procedures of the C library that the program calls. Each has an interface of its own: where
+!> several share an abstract one, gfortran (12) passes addresses in place of values, in some of the
+!> modules that use them.
 module c_library
     use, intrinsic :: iso_c_binding, only : c_char, c_double, c_funptr, c_int, c_int64_t, &
         c_intptr_t, c_long, c_ptr, c_size_t
