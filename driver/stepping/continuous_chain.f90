@@ -10,10 +10,12 @@ module continuous_chain
     use block_steps, only : implicit_rates
     use chain_rates, only : chain_equations
     use continuous_steps, only : continuous
-    use friction_mod, only : friction_facts, friction_no_convergence, friction_no_rate, law_facts
+    use friction_mod, only : friction_bad_state, friction_facts, friction_no_convergence, &
+        friction_no_rate, law_facts
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings
-    use slider_rates, only : along, damped, drive_work, phase_slide, unknowns
+    use slider_rates, only : along, damped, drive_work, memory, most_logarithm, phase_slide, &
+        unknowns
     use slider_system, only : ends_periodic, slider, slider_state
     use step_ends, only : end_of_step
     implicit none
@@ -137,6 +139,7 @@ contains
             end if
         end do
         call self%lengthen(h, error, wanted, again)
+        if (any(abs(self%then(memory, :)) > most_logarithm)) report%status = friction_bad_state
         call self%finish(end, old, new)
     end subroutine step
 

@@ -10,12 +10,13 @@ module continuous_steps
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up
     use block_steps, only : block_integrator, is_short, shortest
     use explicit_pairs, only : dormand_prince, tsitouras
-    use friction_mod, only : friction_message, friction_no_convergence, friction_no_rate, &
-        law_state, load_rates, prop_alpha_n, statev_u_n
+    use friction_mod, only : friction_bad_state, friction_message, friction_no_convergence, &
+        friction_no_rate, law_state, load_rates, prop_alpha_n, statev_u_n
     use phase_changes, only : change_phase, follow_velocity, lifts, phase_at_rest, settle
     use run_settings, only : settings
-    use slider_rates, only : away, damped, drive_work, elastic, extension, memory, phase_open, &
-        phase_slide, phase_stick, place, slip, slider_equations, velocity
+    use slider_rates, only : away, damped, drive_work, elastic, extension, memory, &
+        most_logarithm, phase_open, phase_slide, phase_stick, place, slip, slider_equations, &
+        velocity
     use slider_system, only : slider, slider_state
     use step_ends, only : end_of_step, find_opening, next_limit, vanishing_part, why_too_short
     use sudden_changes, only : stopped, take_load, take_off_spring
@@ -185,6 +186,9 @@ contains
             block%first = tried%last
             call follow_velocity(block, end, slipped)
             call know_velocity(block)
+            if (eq%surface%traits%logarithmic .and. abs(block%y(memory)) > most_logarithm) then
+                report%status = friction_bad_state
+            end if
             block%known = eq%steady .and. .not. self%implicit .and. tried%switch == 0
             if (tried%switch > 0 .and. .not. waits(eq, tried%switch)) call change_phase(block, &
                 end, tried%switch)
@@ -556,6 +560,9 @@ contains
         else if (status == friction_no_rate) then
             why = 'the contact jumps: friction falls faster than the contact spring unloads. ' &
                 // 'Take a larger alpha_t'
+        else if (status == friction_bad_state) then
+            why = 'theta leaves the range of numbers: it tells a change of friction as exp(f/b). ' &
+                // 'Take a larger b'
         else if (status /= friction_no_convergence) then
             why = trim(friction_message(status))
         else

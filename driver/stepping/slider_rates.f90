@@ -34,6 +34,8 @@ module slider_rates
     integer, parameter, public :: phase_capped = 3   !! as the shear cap says
 
     real(dp), parameter :: too_large = 1.0e100_dp   !! for what is to be squared or multiplied
+    !> Largest logarithm of what the law remembers: its exponential and rates are in range.
+    real(dp), parameter, public :: most_logarithm = 600.0_dp
 
     type :: slider_equations
         type(sliding_surface) :: surface
@@ -763,8 +765,8 @@ contains
         case (2)
             state%r = y(memory)
             ! stages of a step that is going to be refused may be anywhere
-            if (self%surface%traits%logarithmic) state%r = exp(min(max(y(memory), -300.0_dp), &
-                300.0_dp))
+            if (self%surface%traits%logarithmic) state%r = exp(min(max(y(memory), &
+                -most_logarithm), most_logarithm))
         case default   ! nothing
         end select
     end function law_state_of

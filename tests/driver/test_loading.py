@@ -756,6 +756,21 @@ class ContinuousTime(Columns):
         self.assertEqual(result.returncode, 1)
         self.assertIn('the slider is unstable without inertia', result.stderr)
 
+    def test_friction_that_weakens_by_many_times_b(self):
+        flash = ("&friction law='flash_heating', a=0.01, b={}, d_c=0.01, v0=1e-6, f0=0.6, f_w=0.1, v_w=0.1, alpha_n=1000, alpha_t=1000 /\n"
+                 '&slider mass=1e-3, stiffness=1, damping=0.02, normal_traction=10 /\n'
+                 '&drive velocity=1 /\n&time t_end=9, {} /\n&output {} /\n')
+        forces = []
+        for time, output in (('rtol=1e-6', 'every=0.1'), ('dt=2e-5', 'interval=5000')):   # theta comes down to 1e-160
+            self.assert_done(self.run_text(flash.format(0.0015, time, output), '--no-plot'))
+            forces.append([float(row['spring_force']) for row in self.rows('case_out/case.csv')])
+        self.assertEqual(len(forces[0]), 91)
+        self.assertLess(worst_of(abs(a - b) for a, b in zip(*forces, strict=True)), 0.01)
+        for chain in ('', '&chain n_blocks=3, coupling=1, scatter=0.1 /\n'):
+            result = self.run_text(flash.format(0.0009, 'rtol=1e-6', 'every=0.1') + chain, '--no-plot')
+            self.assertEqual(result.returncode, 1)
+            self.assertIn('theta leaves the range of numbers', result.stderr)
+
     def test_a_rigid_contact_is_refused_where_it_makes_no_sense(self):
         self.refused(namelist({('friction', 'contact'): "'rigid'", ('time', 'rtol'): '1e-6'}),
                      "&friction contact = 'rigid': is not for the law subloading, whose R needs the contact spring")
