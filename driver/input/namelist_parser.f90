@@ -218,9 +218,13 @@ contains
     subroutine append(parsed, entry)
         type(parsed_text), intent(inout) :: parsed
         type(namelist_entry), intent(in) :: entry
+        type(namelist_entry), allocatable :: more(:)
 
-        if (parsed%n_entries == size(parsed%entries)) parsed%entries = [parsed%entries, &
-            parsed%entries]   ! room
+        if (parsed%n_entries == size(parsed%entries)) then
+            allocate (more(2 * parsed%n_entries))
+            more(:parsed%n_entries) = parsed%entries
+            call move_alloc(more, parsed%entries)
+        end if
         parsed%n_entries = parsed%n_entries + 1
         parsed%entries(parsed%n_entries) = entry
     end subroutine append

@@ -35,7 +35,7 @@ module block_steps
         type(swing) :: free                     !! of a block whose contact rests
         logical :: swings = .false.             !! the step is of that, in closed form
     contains
-        procedure, non_overridable :: attempt, locate, free_amplitude
+        procedure, non_overridable :: attempt, damper_velocity, locate, free_amplitude
     end type block_integrator
 
 contains
@@ -63,7 +63,7 @@ contains
             scales(elastic, 2) = self%natural(elastic) * self%pressed
             associate (block => self%block)
                 if (block%equations%slides_damped()) scales(velocity, 2) = min(scales(velocity, &
-                    2), self%natural(elastic) * block%equations%alpha / block%equations%damper)
+                    2), self%damper_velocity())
                 call rosenbrock_step(block%equations, t, tried%h, block%y, block%first, scales, &
                     tried%y, tried%error, growth)
                 tried%stiffness = tried%h * growth
@@ -126,6 +126,15 @@ contains
             size = self%free%amplitude(y(:controlled), y(velocity) + self%block%first(extension))
         end associate
     end function free_amplitude
+
+    !> At which a damper of the contact alone carries what the surface can, mu p/eta_t [L/T].
+    pure real(dp) function damper_velocity(self)
+        class(block_integrator), intent(in) :: self
+
+        associate (eq => self%block%equations)
+            damper_velocity = self%natural(elastic) * eq%alpha / eq%damper
+        end associate
+    end function damper_velocity
 
     !> Takes a step of the block on its springs alone. It ends where the block is fastest in the
     !> sense of the traction, where the drive spring turns, and where the block turns back from

@@ -430,8 +430,8 @@ contains
             ! beside a damper the velocity tells the traction, unless the contact slides
             if (eq%slides_damped() .and. (eq%phase == phase_stick .or. eq%phase == phase_slide &
                 .and. eq%surface%traits%stiff)) self%weights(velocity) = max( &
-                self%weights(velocity), 1.0_dp / (self%rtol * max(self%natural(elastic) * eq%alpha &
-                / eq%damper, abs(y(velocity)))))
+                self%weights(velocity), 1.0_dp / (self%rtol * max(self%damper_velocity(), &
+                abs(y(velocity)))))
             ! friction that has weakened for good does not ask how far it slips
             self%weights(memory) = merge(0.0_dp, 1.0_dp / (self%rtol * self%natural(memory)), &
                 y(memory) > eq%surface%traits%kink .and. .not. self%heals)

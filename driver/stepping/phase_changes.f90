@@ -377,8 +377,10 @@ contains
         type(damper_balance) :: balance
 
         associate (eq => block%equations)
-            state = eq%law_state_of(block%y, pressure)
-            if (eq%follows_share()) block%y(ratio) = state%r
+            if (eq%follows_share()) then
+                state = eq%law_state_of(block%y, pressure)
+                block%y(ratio) = state%r
+            end if
             balance = eq%balance_at(block%y, eq%pull(block%y))
             eq%sense = balance%sense
             eq%phase = phase_slide
