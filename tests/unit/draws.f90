@@ -4,7 +4,7 @@ module draws
     implicit none
     private
 
-    public :: draw, point, random_point, random_rotation, random_state, seed_draws
+    public :: decade, draw, point, random_point, random_rotation, random_state, seed_draws
 
     !> Constants, state and increment of a contact point.
     type :: point
