@@ -1,5 +1,6 @@
 !> The keys that the program knows, and what may have been meant by one that it does not.
 module known_key_list
+    use similar_words, only : difference
     implicit none
     private
 
@@ -90,39 +91,14 @@ contains
 
     contains
 
-        !> A word that is the beginning of another is much like it, too.
         subroutine compare(word, known, mark)
             character(len=*), intent(in) :: word, known, mark
-            integer :: distance
 
-            distance = edits(word, known)
-            if (index(known, word) == 1) distance = 1
-            if (distance >= least .or. distance == len(word) .and. known(1:1) /= word(1:1)) return
-            least = distance
+            if (difference(word, known) >= least) return
+            least = difference(word, known)
             nearest = mark // known
         end subroutine compare
 
     end function suggestion
-
-    !> How many letters must be changed, added, taken out or exchanged with the next one to turn
-    !> one word into another?
-    pure integer function edits(from, to) result(n)
-        character(len=*), intent(in) :: from, to
-        integer :: d(-1:len(from), -1:len(to)), cost, i, j
-
-        d = len(from) + len(to)
-        d(0:, 0) = [(i, i = 0, len(from))]
-        d(0, 0:) = [(j, j = 0, len(to))]
-        do j = 1, len(to)
-            do i = 1, len(from)
-                cost = merge(0, 1, from(i:i) == to(j:j))
-                d(i, j) = min(d(i - 1, j) + 1, d(i, j - 1) + 1, d(i - 1, j - 1) + cost)
-                if (min(i, j) == 1) cycle
-                if (from(i:i) == to(j - 1:j - 1) .and. from(i - 1:i - 1) == to(j:j)) d(i, j) = &
-                    min(d(i, j), d(i - 2, j - 2) + 1)
-            end do
-        end do
-        n = d(len(from), len(to))
-    end function edits
 
 end module known_key_list

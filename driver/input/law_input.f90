@@ -45,17 +45,43 @@ contains
             table, props)
     end subroutine read_friction
 
-    !> The number of the law; that of the first one, if there is something wrong with its name.
+    !> The number of the law; if there is something wrong with its name, of the one that most of the
+    !> constants fit.
     subroutine read_law(file, number)
         type(namelist_file), intent(inout) :: file
         integer, intent(out) :: number
         character(len=:), allocatable :: law
         character(len=len(friction_law_name(1))) :: names(friction_law_count)
+        integer :: faults_before
 
         names = [(friction_law_name(number), number = 1, friction_law_count)]
+        faults_before = size(file%faults)
         call file%get_choice(group, 'law', law, names, default=trim(names(1)))
-        number = max(1, friction_law_number(law))
+        if (size(file%faults) == faults_before) then
+            number = friction_law_number(law)
+        else
+            number = minloc([(misfits(file, friction_constants(number)), number = 1, &
+                friction_law_count)], dim=1)
+        end if
     end subroutine read_law
+
+    !> How many constants of a law are missing, less how many are given?
+    integer function misfits(file, table) result(n)
+        type(namelist_file), intent(in) :: file
+        type(constant_table), intent(in) :: table
+        integer, allocatable :: mine(:)
+        integer :: place
+
+        n = 0
+        do place = prop_law + 1, table%n
+            call file%find(group, trim(table%of(place)%name), mine)
+            if (size(mine) > 0) then
+                n = n - 1
+            else if (.not. table%of(place)%optional) then
+                n = n + 1
+            end if
+        end do
+    end function misfits
 
     !> A constant that is given although it belongs to another law is told so.
     subroutine point_to_other_laws(file)

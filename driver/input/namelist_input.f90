@@ -9,6 +9,7 @@ module namelist_input
     use number_reader, only : largest, read_number
     use number_text, only : whole_text
     use printable_text, only : lower
+    use similar_words, only : most_similar
     use whole_file, only : plain_text, read_whole_file
     implicit none
     private
@@ -201,6 +202,9 @@ contains
         end do
         if (size(choices) > 1) list = 'one of ' // list
         if (.not. token%quoted) list = 'text in quotes, ' // list
+        place = most_similar(lower(token%text), choices)
+        if (token%quoted .and. place > 0) list = list // "; did you mean '" &
+            // trim(choices(place)) // "'?"
         call self%reject(group, key, 'must be ' // list, token=token)
         place = 0
     end subroutine take_choice

@@ -362,6 +362,14 @@ class Laws(Program):
                                     ('output', 'checkpont', 'checkpoint')):
             self.refused(namelist({(group, wrong): '1'}), f"&{group} {wrong}: unknown key; did you mean '{right}'?")
 
+    def test_the_name_of_a_law_is_the_only_fault_where_nothing_else_is_wrong(self):
+        for law in LAWS:
+            for wrong, meant in ((law.replace('_', '-') + 's', law), (law[:-3], law), ('anisotropic', None)):
+                told = self.run_text(law_namelist(law).replace(f"'{law}'", f"'{wrong}'"), verb='check').stderr
+                self.assertEqual(len(told.splitlines()), 1, told)
+                self.assertIn(f"&friction law = '{wrong}': must be one of 'subloading', 'coulomb'", told)
+                self.assertTrue(told.strip().endswith(f"; did you mean '{meant}'?" if meant else "'linker_dieterich'"), told)
+
     def test_a_key_is_told_of_a_law_only_in_the_group_of_the_law(self):
         for law in LAWS:
             self.refused(law_namelist(law) + '&chain n = 5, coupling = 1 /\n',
