@@ -305,13 +305,15 @@ contains
             mu = run%initial%mu
             if (has_r(run%props) .and. .not. run%initial%mu_given) mu = law%virgin_mu
             if (mu > law%largest_coefficient) then
-                call refuse('mu', 'exceeds its static friction coefficient')
+                call refuse('mu', 'exceeds its static friction coefficient, ' &
+                    // short_text(law%largest_coefficient))
             else if (has_r(run%props) .and. mu < law%kinetic_coefficient) then
                 call refuse('mu', 'is below its mu_k')
             else if (run%initial%r * (mu * pressure + merge(law%cohesion, 0.0_dp, &
                 has_r(run%props))) > law%shear_cap) then
                 call refuse(merge('r ', 'mu', has_r(run%props)), &
-                    'makes a friction force above its tau_max')
+                    'makes a tangential traction above its tau_max = ' &
+                    // short_text(law%shear_cap))
             end if
         end do
         call tell_more(file, faults)

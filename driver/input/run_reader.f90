@@ -10,6 +10,7 @@ module run_reader
     use law_facts, only : has_r, largest_pressure_effect, pressure_effect, typical_strength
     use law_input, only : refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file
+    use number_text, only : short_text
     use run_settings, only : settings
     use unit_reader, only : read_units
     implicit none
@@ -207,7 +208,8 @@ contains
                 call file%get_real(group, 'mu', start%mu, at_least(0.0_dp), default=0.0_dp)
                 start%r = merge(1.0_dp, 0.0_dp, start%mu > 0.0_dp)
                 if (alike .and. start%mu > law%largest_coefficient) call file%reject(group, 'mu', &
-                    'must not exceed the static friction coefficient')
+                    'must not exceed the static friction coefficient, ' &
+                    // short_text(law%largest_coefficient))
                 call file%refuse(group, 'r', 'belongs to the law subloading')
             end if
             if (.not. allocated(run%drive%normal)) return
@@ -216,7 +218,8 @@ contains
             if (.not. alike) return
             if (start%r * (start%mu * run%drive%normal_traction(0.0_dp, 1) + merge(law%cohesion, &
                 0.0_dp, start%has_r)) > law%shear_cap) then
-                call file%reject(group, key, 'makes a friction force above tau_max')
+                call file%reject(group, key, 'makes a tangential traction above tau_max = ' &
+                    // short_text(law%shear_cap))
             end if
         end associate
     end subroutine read_initial_friction

@@ -233,9 +233,9 @@ class Refused(OwnConstants):
     def test_a_start_that_a_block_cannot_have(self):
         self.write_profile({'block': [1, 2, 3], 'mu_s': [0.4, 0.3, 0.4], 'tau_max': [10.0, 10.0, 1.0]})
         self.refused(namelist({**RUN, ('friction', 'mu_s'): "'@profile.csv'", ('initial', 'mu'): '0.35'}),
-                     '&initial mu = 0.35: block 2: exceeds its static friction coefficient')
+                     '&initial mu = 0.35: block 2: exceeds its static friction coefficient, 0.3\n')
         self.refused(namelist({**RUN, ('friction', 'tau_max'): "'@profile.csv'", ('initial', 'r'): '0.5'}),
-                     '&initial r = 0.5: block 3: makes a friction force above its tau_max')
+                     '&initial r = 0.5: block 3: makes a tangential traction above its tau_max = 1\n')
 
 
 class Resumed(LongRun):

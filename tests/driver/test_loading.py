@@ -1152,13 +1152,13 @@ class BadProgramme(Columns):
         self.refused(law_namelist('rate_and_state') + '&initial r=0.5 /', '&initial r = 0.5: belongs to the law subloading')
 
     def test_an_initial_friction_beyond_the_strength_is_refused(self):
-        for law in ('coulomb', 'static_kinetic', 'slip_weakening'):
+        for law, strength in (('coulomb', '0.3'), ('static_kinetic', '0.4'), ('slip_weakening', '0.4')):
             self.refused(law_namelist(law) + '&initial mu=0.41 /',
-                         '&initial mu = 0.41: must not exceed the static friction coefficient')
+                         f'&initial mu = 0.41: must not exceed the static friction coefficient, {strength}\n')
         self.refused(law_namelist('rate_and_state', tau_max='2') + '&initial mu=0.3 /',
-                     '&initial mu = 0.3: makes a friction force above tau_max')
+                     '&initial mu = 0.3: makes a tangential traction above tau_max = 2\n')
         self.refused(namelist({('friction', 'tau_max'): '2', ('initial', 'r'): '0.8', ('initial', 'mu'): '0.3'}),
-                     '&initial r = 0.8: makes a friction force above tau_max')
+                     '&initial r = 0.8: makes a tangential traction above tau_max = 2\n')
         result = self.run_text(law_namelist('coulomb', tau_max='3') + '&initial mu=0.3 /', '--no-plot')
         self.assertEqual(result.returncode, 0, result.stderr)
 
