@@ -18,12 +18,13 @@ module fault_fields
     type :: fault_field_file
         type(field_parts) :: parts
     contains
-        procedure :: create, go_on, write_record, save, bytes
-        procedure, private :: prepare, describe
+        procedure :: prepare, go_on, write_record, save, bytes
+        procedure, private :: describe
     end type fault_field_file
 
 contains
 
+    !> For the records of a new run.
     subroutine prepare(self, here, base)
         class(fault_field_file), intent(inout) :: self
         type(fault), intent(in) :: here
@@ -36,16 +37,6 @@ contains
         end associate
         call self%parts%take_rows(here%part%first, here%part%rows)
     end subroutine prepare
-
-    subroutine create(self, here, together, base)
-        class(fault_field_file), intent(inout) :: self
-        type(fault), intent(in) :: here
-        type(team), intent(in) :: together
-        character(len=*), intent(in) :: base
-
-        call self%prepare(here, base)
-        if (together%rank == 0) call self%parts%remove_old()
-    end subroutine create
 
     !> Goes on behind the records that a checkpoint knows of.
     subroutine go_on(self, here, together, base, records)

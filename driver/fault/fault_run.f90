@@ -76,7 +76,7 @@ contains
             live%watch%largest_rate = together%largest(maxval(live%state%rate))
             call live%records%begin(live%here, together, live%state, live%watch)
             if (plan%fields > 0) then
-                call live%fields%create(live%here, together, base)
+                call live%fields%prepare(live%here, base)
                 call live%fields%write_record(live%here, together, live%state)
             end if
             call leave_checkpoint(live, together, problem)   ! a launcher may give no time for one

@@ -20,8 +20,8 @@ module chain_fields
         type(field_parts) :: parts
         integer :: n_blocks = 0   !! 0: no fields are wanted
     contains
-        procedure :: create, go_on, write_record, save, bytes
-        procedure, private :: prepare, describe
+        procedure :: prepare, go_on, write_record, save, bytes
+        procedure, private :: describe
     end type chain_field_file
 
 contains
@@ -32,6 +32,7 @@ contains
         bytes = field_record_bytes(int(n_blocks, int64), size(names))
     end function chain_record_bytes
 
+    !> For the records of a new run.
     subroutine prepare(self, base, n_blocks)
         class(chain_field_file), intent(inout) :: self
         character(len=*), intent(in) :: base
@@ -42,15 +43,6 @@ contains
         call self%parts%prepare(base, names, [character(len=5) :: 'block', ''], &
             [(real(i, dp), i = 1, n_blocks)], [1.0_dp])
     end subroutine prepare
-
-    subroutine create(self, base, n_blocks)
-        class(chain_field_file), intent(inout) :: self
-        character(len=*), intent(in) :: base
-        integer, intent(in) :: n_blocks
-
-        call self%prepare(base, n_blocks)
-        call self%parts%remove_old()
-    end subroutine create
 
     !> Goes on in the files of an interrupted run, behind its first records.
     subroutine go_on(self, base, n_blocks, records)

@@ -34,7 +34,7 @@ module field_file
         integer(int64), private :: per_part = 1              !! records
         real(dp), allocatable, private :: values(:, :, :)    !! own cell, record of the part, field
     contains
-        procedure :: prepare, take_rows, remove_old, next, put
+        procedure :: prepare, take_rows, next, put
         procedure :: is_full, is_saved, lay_out, write_own, publish, withdraw
         procedure :: count_saved, find, read_own, read_record, data_item, last_together
         procedure, private :: part_name, parts, records_of, find_part
@@ -85,23 +85,6 @@ contains
         allocate (self%values(rows * self%layout%columns, self%per_part, self%layout%fields))
         self%cells_before = (first - 1) * self%layout%columns
     end subroutine take_rows
-
-    !> Removes what another run has left (first process).
-    subroutine remove_old(self)
-        class(field_parts), intent(in) :: self
-        integer(int64) :: part
-        logical :: there
-
-        call remove_file(self%base // '_fields.h5')
-        call remove_file(self%base // '_fields.xdmf')
-        part = 1
-        do
-            inquire (file=self%part_name(part), exist=there)
-            if (.not. there) exit
-            call remove_file(self%part_name(part))
-            part = part + 1
-        end do
-    end subroutine remove_old
 
     ! ---- records -----------------------------------------------------------------------------
 

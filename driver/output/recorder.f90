@@ -69,7 +69,7 @@ contains
         else
             call self%events%write_line(event_columns)
         end if
-        if (self%fields_interval > 0) call self%fields%create(self%base, self%n_blocks)
+        if (self%fields_interval > 0) call self%fields%prepare(self%base, self%n_blocks)
         call self%flush_all()
     end subroutine open
 
