@@ -26,7 +26,7 @@ module run_outcome
         integer :: iterations = 0, most_iterations = 0
         logical :: in_rates = .false.              !! iterations are evaluations of rates
         integer :: rejected = 0                    !! steps tried in vain
-        integer :: snap_backs = 0                  !! steps that saw several equilibria
+        integer :: snap_backs = 0                  !! steps that had several equilibria
         real(dp) :: time = 0.0_dp                  !! reached [T]
         real(dp) :: peak_velocity = 0.0_dp         !! [L/T]
         integer :: chain_events = 0                !! in the catalogue of a chain, ended

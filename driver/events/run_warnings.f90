@@ -56,8 +56,8 @@ contains
         associate (e => result%energy)
             passed = max(e%most_work, abs(e%at_start), e%dissipated + e%damped)
             if (abs(e%unbalanced()) <= allowed * passed) return
-            write (text, '(a, f0.1, a)') 'the balance of energy is open by ', &
-                100.0_dp * abs(e%unbalanced()) / passed, ' %: take '
+            write (text, '(a, f0.1, a)') 'the energy balance has an error of ', &
+                100.0_dp * abs(e%unbalanced()) / passed, ' %: use '
         end associate
         law = friction_facts(run%props)
         if (run%adaptive .and. run%across%free() .and. run%newmark .and. law%traits%onset &
@@ -68,10 +68,10 @@ contains
         else if (run%adaptive) then
             text = trim(text) // ' a smaller rtol'
         else
-            text = trim(text) // ' shorter steps (dt), or steps by their error (rtol)'
+            text = trim(text) // ' shorter steps (dt), or adaptive steps (rtol)'
         end if
-        if (damps_steps(run)) text = trim(text) // '; what rho_infinity or gamma damps counts as &
-            &open'
+        if (damps_steps(run)) text = trim(text) // '; energy that rho_infinity or gamma &
+            &damps is part of this error'
         warnings = [warnings, run_warning('energy_balance', text)]
     end subroutine look_at_energy
 
@@ -117,7 +117,7 @@ contains
         if (run%dt <= longest_step(run, friction_facts(run%props))) return
         text = 'the step dt =' // rounded_text(run%dt, 9, 2) // ' is long for slip events, which ' &
             // 'last about pi sqrt(mass/stiffness) =' // rounded_text(event_duration(run), 9, 2) &
-            // ': take thirty steps or more to an event'
+            // ': use thirty steps or more per event'
         warnings = [warnings, run_warning('long_step', text)]
     end subroutine look_at_step
 
@@ -155,7 +155,7 @@ contains
         end if
         warnings = [warnings, run_warning('undamped_contact', 'friction drops at once when slip &
             &begins, and the contact spring (alpha_t) rings undamped or sticks in between: &
-            &periods, stress drops and friction depend on it. Take ' // remedies(run, law, drop))]
+            &periods, stress drops and friction depend on it. Use ' // remedies(run, law, drop))]
     end subroutine look_at_contact
 
     type(drop_of_friction) function find_drop(run, law) result(drop)
@@ -235,7 +235,7 @@ contains
         if (result%time * (1.0_dp - round_off) <= run%drive%measured_until) return
         text = 'the file of the drive ends at time ' &
             // rounded_text(run%drive%measured_until, 12, 5) // ', before t_end = ' &
-            // rounded_text(run%t_end, 12, 5) // ': its last velocity and normal traction went on'
+            // rounded_text(run%t_end, 12, 5) // ': its last velocity and normal traction were kept'
         warnings = [warnings, run_warning('short_file', text)]
     end subroutine look_at_file
 
@@ -252,9 +252,9 @@ contains
         if (result%in_rates .or. .not. run%load_vanishes()) return
         effect = pressure_effect(run%props, run%chain%constants)
         if (effect <= most) return
-        write (text, '(a, f0.1, a)') 'the state grows so fast as the normal traction vanishes &
-            &(alpha is ', effect, ' times b) that the contact counts as open before: what would &
-            &slip there is missing. One block with adaptive steps has none of that'
+        write (text, '(a, f0.1, a)') 'as the normal traction vanishes the state grows so fast &
+            &(alpha is ', effect, ' times b) that the contact counts as open too early: its last &
+            &slip is missing. Adaptive steps of one block have no such limit'
         warnings = [warnings, run_warning('early_opening', text)]
     end subroutine look_at_opening
 

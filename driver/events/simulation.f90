@@ -29,7 +29,7 @@ module simulation
         type(slip_watch) :: slip_events
         type(chain_watch) :: chain_events
         integer :: taken = 0                   !! steps
-        integer :: snap_backs = 0              !! steps that saw several equilibria
+        integer :: snap_backs = 0              !! steps that had several equilibria
         real(dp) :: energy_at_start = 0.0_dp   !! held then, in all forms [F L]
         real(dp) :: let_go = 0.0_dp            !! lost by contact springs when they opened or
                                                !! jumped, beyond what states of friction tell [F L]

@@ -23,7 +23,7 @@ module fault_run
 
     integer, parameter :: steps_between_looks = 16   !! at the clock
     character(len=*), parameter :: tables_are_full = &
-        'the tables are as large as &output table_limit: resume the run with a larger one'
+        'the tables have reached &output table_limit: use --resume with a larger limit'
     integer, parameter :: own_numbers = 17           !! of a checkpoint's header
 
     !> All that a run is made of.
@@ -96,7 +96,7 @@ contains
             if (.not. quiet) call print_summary(live, most_slip, seconds() - begun)
             call warn_of_energy(live%state%energy)
             if (live%watch%on) write (error_unit, '(3a)') 'stickslip: warning: an event is ' &
-                // 'under way at t_end: it is not in ', base, '_events.csv'
+                // 'still in progress at t_end: it is not in ', base, '_events.csv'
         end if
         call live%here%surroundings%free()
     end subroutine run_fault
@@ -257,7 +257,8 @@ contains
         if (here%plan%nx > 1) cell = max(cell, here%plan%dx())
         if (here%cohesive_length < least_cells * cell) write (error_unit, '(5a, f0.1, a)') &
             'stickslip: warning: cells of ', text_of(cell), ' do not resolve the cohesive length ' &
-            // 'of ', text_of(here%cohesive_length), ': it takes ', least_cells, ' or more of them'
+            // 'of ', text_of(here%cohesive_length), ': use ', least_cells, &
+            ' or more cells per cohesive length'
     end subroutine warn
 
     subroutine warn_of_energy(energy)
@@ -265,8 +266,8 @@ contains
         real(dp), parameter :: allowed = 0.02_dp
 
         if (energy%unbalanced() > allowed) write (error_unit, '(a, f0.1, a)') &
-            'stickslip: warning: the balance of energy is open by ', 100.0_dp &
-            * energy%unbalanced(), ' %: the steps are too long, rtol too large'
+            'stickslip: warning: the energy balance has an error of ', 100.0_dp &
+            * energy%unbalanced(), ' %: use a smaller rtol'
     end subroutine warn_of_energy
 
     subroutine print_summary(live, most_slip, elapsed)
@@ -282,8 +283,8 @@ contains
             write (report, '(8a)') 'energy         loading ', text_of(energy%loading), &
                 ' = elastic ', text_of(energy%elastic), ' + dissipated ', &
                 text_of(energy%dissipated), ' + radiated ', text_of(energy%radiated)
-            write (report, '(3a)') '               open by ', &
-                trim(adjustl(rounded_text(energy%unbalanced(), 8, 1))), ' of the largest'
+            write (report, '(3a)') '               error ', &
+                trim(adjustl(rounded_text(energy%unbalanced(), 8, 1))), ' of the largest term'
         end associate
         write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
         write (report, '(3a)') 'results        ', live%base, '_events.csv, _global.csv and others'

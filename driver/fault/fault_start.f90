@@ -53,7 +53,7 @@ contains
         end if
         call find_states(here, state, cell)
         state%traction = here%prestress - here%damping * state%rate
-        call tell_refused_cell(here, together, state, cell, 'no state of friction slides so', &
+        call tell_refused_cell(here, together, state, cell, 'no state of the law slides so fast', &
             problem)
     end subroutine start_rate_state
 
@@ -187,7 +187,7 @@ contains
         if (own_status >= 0) cell = 0
         why = trim(friction_message(status))
         ! the law's, of a traction beyond its strength
-        if (status == friction_bad_state) why = 'friction does not carry so much'
+        if (status == friction_bad_state) why = 'the traction exceeds the strength'
         call tell_refused_cell(here, together, state, cell, why, problem)
         if (len(problem) > 0) return
         here%prestress = state%traction + here%damping * state%rate

@@ -115,7 +115,7 @@ contains
         end do
         if (size(dimensions) > most_dimensions .or. product(real(lengths, dp)) > most_rows) then
             call read_in%add_fault(0, 'its variables have ' // whole_text(size(dimensions)) &
-                // ' dimensions of more than one place, or too many places')
+                // ' dimensions with more than one value, or too many values')
             return
         end if
         deallocate (read_in%values, read_in%lines)

@@ -134,8 +134,8 @@ contains
         end do
         if (form%doubt_line > 0 .and. form%separator /= ';' .and. .not. form%sure) then
             call read_in%add_fault(form%doubt_line, form%in_doubt // ': is its comma a decimal ' &
-                // 'mark, or does it part thousands? No number of the file tells: write it ' &
-                // 'without, or separate the cells by semicolons')
+                // 'mark or a thousands separator? No number of the file decides it: write ' &
+                // 'numbers without such a comma, or separate the cells by semicolons')
         end if
         if (form%cut_line > 0) call read_in%add_fault(form%cut_line, other_size(form, &
             form%last_cells) // ', and the row before has more: the file is cut short')
@@ -433,7 +433,7 @@ contains
             end if
         end if
         if (form%empty_row > 0) call read_in%add_fault(form%empty_row, &
-            'the row is empty, and there are others behind it')
+            'the row is empty, and other rows follow it')
         form%empty_row = 0
         if (cells%n < form%least_cells .or. any(cells%last(form%named_cells + 1:cells%n) &
             >= cells%first(form%named_cells + 1:cells%n))) then
@@ -469,7 +469,7 @@ contains
         integer, intent(in) :: n                      !! cells of the row
         character(len=:), allocatable :: text
 
-        text = 'has not as many cells as the header: ' // whole_text(n) // ' for ' &
+        text = 'does not have as many cells as the header: ' // whole_text(n) // ' for ' &
             // whole_text(form%named_cells)
         if (form%separator == ',' .and. n > form%named_cells) text = text &
             // ' (cells with a decimal comma need quotes)'
@@ -547,7 +547,7 @@ contains
         else if (.not. is_number .and. len(why) == 0) then
             why = 'must be a finite number'
         else if (too_small) then
-            why = 'is smaller than any number here but 0'
+            why = 'is not 0, but below the smallest number'
         else if (mark > 0 .and. mark /= form%mark .and. len(why) == 0) then
             why = 'has a decimal ' // merge('point', 'comma', mark == 1) // ', and line ' &
                 // whole_text(form%mark_line) // ' has another mark'

@@ -142,12 +142,13 @@ contains
 
         faults_before = size(file%faults)
         do i = 1, size(lists)
-            call file%refuse(group, trim(lists(i)), 'cannot stand beside file')
+            call file%refuse(group, trim(lists(i)), 'cannot be given together with file')
         end do
         call read_column_keys(file, group, columns, requests)
         if (len(path) == 0) return
         if (file%given(group, 'velocity_column')) then
-            call file%refuse(group, 'displacement_column', 'cannot stand beside velocity_column')
+            call file%refuse(group, 'displacement_column', 'cannot be given together with &
+                &velocity_column')
             requests = requests([1, 2, 4])
         else if (file%given(group, 'displacement_column')) then
             requests = requests([1, 3, 4])

@@ -75,7 +75,7 @@ contains
             call file%get_real(group, 'poisson', plan%poisson, between(0.0_dp, 0.5_dp), &
                 default=0.25_dp)
             if (real(plan%nx, dp) * plan%nz > most_cells) call file%reject(group, 'nx', &
-                'times nz makes more cells than can be counted')
+                'times nz gives more than 2e9 cells')
         end if
     end subroutine read_surroundings
 
@@ -121,11 +121,11 @@ contains
         if (plan%rate_state) call file%refuse('friction', 'theta_0', &
             'has no effect on a fault, whose states follow from slip rates and tractions')
         call file%refuse('friction', 'eta_t', &
-            'has no effect on a fault, whose slip is told from what its contact springs do')
+            'has no effect on a fault, whose slip does not depend on its contact springs')
         plan%constants%x = x
         plan%constants%z = z
-        if (drops) call file%reject('friction', 'law', 'drops as soon as slip is fast: no length ' &
-            // 'is left over which ruptures break through, and no cells are small enough')
+        if (drops) call file%reject('friction', 'law', 'has friction that falls with the slip ' &
+            // 'rate alone: ruptures have no length scale, and no cells are small enough')
         plan%explicit = plan%rate_state
     end subroutine read_constants
 

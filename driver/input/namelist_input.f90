@@ -114,10 +114,10 @@ contains
             why = 'must be a number'
         else if (.not. ieee_is_finite(value)) then
             why = 'must be finite'
-            if (scan(token%text, '0123456789') > 0) why = 'must be finite: it is larger than ' &
-                // 'any number here, 1.8e308'
+            if (scan(token%text, '0123456789') > 0) why = 'must be finite: it exceeds the ' &
+                // 'largest number, 1.8e308'
         else if (too_small) then
-            why = 'is smaller than any number here but 0, 4.9e-324'
+            why = 'is not 0, but below the smallest number, 4.9e-324'
         else if (abs(value) > largest) then
             why = 'must not exceed 1e100 in size'
         else if (.not. allowed%holds(value)) then
@@ -141,7 +141,7 @@ contains
         call self%get_real(group, key, number, allowed, default=real(default, dp))
         value = default
         if (abs(number) > real(huge(value), dp)) then
-            call self%reject(group, key, 'must be a whole number that can be counted to')
+            call self%reject(group, key, 'must be a whole number up to 2147483647')
         else if (abs(number - anint(number)) > 0.0_dp) then
             call self%reject(group, key, 'must be a whole number')
         else

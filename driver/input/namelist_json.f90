@@ -71,7 +71,7 @@ contains
         else if (.not. ieee_is_finite(number)) then
             call refuse('must be finite')
         else if (too_small) then
-            call refuse('is smaller than any number here but 0, 4.9e-324')
+            call refuse('is not 0, but below the smallest number, 4.9e-324')
         else
             digits = token%text(verify(token%text // ' ', '+-0'):)
             if (verify(digits, '0123456789') == 0 .and. len(digits) <= most_digits) then

@@ -282,7 +282,7 @@ contains
         if (.not. all(ok) .or. entry%stride == 0) then
             problem = 'is not a subscript'
         else if (min(entry%first, last) < 1 .or. max(entry%first, last) > most_values) then
-            problem = 'leads out of the list: places go from 1 to 1000000'
+            problem = 'is outside the list, whose places are 1 to 1000000'
         else if (colon > 0) then
             most = max(0, (last - entry%first + entry%stride) / entry%stride)
             if (most == 0) problem = 'has no places'

@@ -42,7 +42,7 @@ contains
         call file%refuse_unknown()
         if (size(file%faults) > 0) return
         if (run%loading%increments() > real(huge(1) - 1, dp)) call file%reject(group, 'cycles', &
-            'makes more increments than can be counted')
+            'gives more than 2147483647 increments')
     end subroutine read_point_settings
 
     !> The path as lists of the namelist. One value stands for all segments.
@@ -58,7 +58,7 @@ contains
         call file%get_reals(group, 'duration', duration, at_least(0.0_dp))
         call file%get_reals(group, 'steps', steps, at_least(1.0_dp))
         if (any(abs(steps - anint(steps)) > 0.0_dp .or. steps > real(huge(1), dp))) call &
-            file%reject(group, 'steps', 'must be whole numbers that can be counted to')
+            file%reject(group, 'steps', 'must be whole numbers up to 2147483647')
         n = size(duration)
         if (.not. file%given(group, 'file')) then
             call file%require(group, 'duration')
@@ -129,13 +129,13 @@ contains
             return
         end if
         do i = 1, size(segment_keys)
-            call file%refuse(group, trim(segment_keys(i)), 'must not be given beside file')
+            call file%refuse(group, trim(segment_keys(i)), 'cannot be given together with file')
         end do
         call read_column_keys(file, group, columns(:2 * loading%ndir + 1), requests)
         do i = 2, size(requests), 2
             if (file%given(group, trim(columns(i)) // '_column')) call file%refuse(group, &
-                trim(columns(i + 1)) // '_column', 'cannot stand beside ' // trim(columns(i)) &
-                // '_column')
+                trim(columns(i + 1)) // '_column', 'cannot be given together with ' &
+                // trim(columns(i)) // '_column')
         end do
         if (len(name) == 0) return
         requests = pack(requests, [(wanted(i), i = 1, size(requests))])

@@ -47,8 +47,8 @@ contains
         call read_time(file, run)
         if (run%adaptive .and. size(file%faults) == 0) then   ! a part of nothing cannot be met
             if (.not. typical_strength(run%props, run%drive%largest_normal()) > 0.0_dp) call &
-                file%reject('time', 'rtol', 'is a part of the static friction force, which is 0 ' &
-                // 'here')
+                file%reject('time', 'rtol', 'is relative to the static friction force, which ' &
+                // 'is 0 here')
         end if
         if (run%across%free() .and. run%chain%n_blocks > 1) call file%reject('slider', &
             'normal_mass', 'is for one block')
@@ -130,7 +130,7 @@ contains
         if (file%given(group, 'interval')) call file%reject(group, 'every', &
             'give it or interval, not both')
         if (run%every > 0.0_dp .and. run%every * most_rows < run%t_end) call file%reject(group, &
-            'every', 'makes more rows than can be counted')
+            'every', 'gives more than 1e9 rows')
         run%interval = huge(run%interval)
     end subroutine read_rows
 
@@ -152,8 +152,8 @@ contains
         if (run%chain%slip_rate > 0.0_dp) return
         run%chain%slip_rate = multiple * maxval(abs(run%drive%velocity))
         if (run%chain%slip_rate <= 0.0_dp) call file%add_fault(file%line_of_group('chain'), &
-            '&chain slip_rate: is missing: give the slip rate from which on a block takes part ' &
-            // 'in an event. It has no default where friction does not fall from static to ' &
+            '&chain slip_rate: is missing: give the slip rate above which a block belongs to ' &
+            // 'an event. It has no default if friction does not fall from static to ' &
             // 'kinetic and the drive never moves')
     end subroutine derive_slip_rate
 
@@ -247,7 +247,7 @@ contains
         if (run%dt > run%t_end) call file%reject(group, 'dt', 'must not exceed t_end')
         if (run%adaptive) return
         if (run%t_end > run%dt * real(huge(run%n_steps) - 1, dp)) call file%reject(group, 'dt', &
-            'makes more steps up to t_end than can be counted')
+            'gives more than 2147483647 steps up to t_end')
         if (size(file%faults) > faults_before) return
         steps = run%t_end / run%dt
         run%n_steps = nint(steps)
@@ -331,12 +331,12 @@ contains
         falls = run%area * law%rate_weakening * run%drive%largest_normal()
         if (falls > 0.0_dp .and. run%damping <= falls) then
             call file%reject(group, key, 'must exceed area d_c (mu_s - mu_k) normal_traction ' &
-                // 'without mass and with adaptive steps (&time rtol), or no velocity balances ' &
-                // 'the forces')
+                // 'without mass and with adaptive steps (&time rtol): otherwise no velocity ' &
+                // 'balances the forces')
         else if (run%rigid_contact .and. .not. run%damping > 0.0_dp .and. law%traits%onset &
             /= onset_gradual) then
-            call file%reject(group, key, 'or a mass must be there beside contact = ''rigid'': ' &
-                // 'nothing else tells the velocity of the block under this law')
+            call file%reject(group, key, 'or mass must be > 0 with contact = ''rigid'': ' &
+                // 'otherwise the velocity of the block is undetermined under this law')
         end if
     end subroutine check_massless
 
@@ -378,15 +378,15 @@ contains
             group, key, 'needs adaptive steps (&time rtol) of one block, without beta, gamma and ' &
             // 'rho_infinity')
         if (has_r(run%props)) call file%reject(group, key, &
-            'is not for the law subloading, whose R needs the contact spring')
+            'is not possible for the law subloading, whose R needs the contact spring')
         law = friction_facts(run%props)
         if (law%damping > 0.0_dp) call file%reject(group, key, &
-            'has no spring for a damper (eta_t) to stand beside')
+            'has no contact spring, and so no damper (eta_t) either')
         if (run%across%free() .and. pressure_effect(run%props) > 0.0_dp) call file%reject(group, &
-            key, 'is not for a state that depends on the pressure (alpha) where that follows ' &
-            // 'from the motion (normal_mass)')
+            key, 'is not possible for a state that depends on the pressure (alpha) with a ' &
+            // 'normal_mass')
         if (law%traits%onset == onset_gradual .and. law%cohesion > 0.0_dp) call file%reject(group, &
-            key, 'has no cohesion where the slip rate tells the traction')
+            key, 'cannot have cohesion under rate-and-state friction')
     end subroutine check_contact
 
 end module run_reader

@@ -325,8 +325,8 @@ contains
             y = rate%at(bounds(2))
             if (law%variable == on_memory .and. y(1) >= 0.0_dp) then
                 ! it has grown to where it no longer counts
-                if (bounds(2) >= huge(y)) problem = 'friction changes for ever: there is no ' &
-                    // 'steady sliding'
+                if (bounds(2) >= huge(y)) problem = 'friction never becomes constant: there is ' &
+                    // 'no steady sliding'
                 law%state%r = bounds(2)
                 remembered = 0
                 return

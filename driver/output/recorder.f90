@@ -118,7 +118,7 @@ contains
         if (self%events%failed) call news%stop_run('cannot write the events (disk full?)')
         if (self%fields%parts%failed) call news%stop_run('cannot write the fields (disk full?)')
         if (self%series%bytes + self%fields%bytes() > self%table_limit) call news%stop_run( &
-            'the tables are as large as &output table_limit: resume the run with a larger one')
+            'the tables have reached &output table_limit: use --resume with a larger limit')
     end subroutine tell_loss
 
     !> Writes what was cut short, and closes the files. However a run ends, its last row is its last

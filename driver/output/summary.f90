@@ -53,22 +53,22 @@ contains
             rounded_text(result%time, 12, 5), ' [T]'
         if (result%in_rates) then
             write (report, '(3a)') 'rate evaluations   ', trim(per_step(result%iterations, &
-                result%steps)), ' a step, with those of rejected steps'
+                result%steps)), ' per step, rejected steps included'
         else
-            most = ', most '
-            if (run%adaptive) most = ' with all its parts, most in a part '
+            most = ', at most '
+            if (run%adaptive) most = ' with its substeps, at most per substep '
             write (report, '(4a, i0)') 'Newton iterations  ', &
-                trim(per_step(result%iterations, result%steps)), ' a step', most, &
+                trim(per_step(result%iterations, result%steps)), ' per step', most, &
                 result%most_iterations
         end if
         if (result%rejected > 0) write (report, '(a, i0)') 'rejected steps     ', result%rejected
         if (result%snap_backs > 0) write (report, '(a, i0, 3a)') 'snap-back          ', &
-            result%snap_backs, ' steps saw several equilibria: take a smaller ', &
+            result%snap_backs, ' steps had several equilibria: use a smaller ', &
             trim(merge('rtol', 'dt  ', run%adaptive)), ' or a larger alpha_t'
         write (report, '(a, i0)') 'slip events        ', all%events
         if (run%chain%n_blocks > 1) then
             write (report, '(2(a, i0), a)') 'events of blocks   ', result%chain_events, &
-                ', and ', result%cut_events, ' under way at the end'
+                ', and ', result%cut_events, ' still in progress at the end'
             call line('largest moment     ', result%largest_moment, &
                 min(1, result%chain_events), '[L^3]')
         end if
@@ -101,14 +101,15 @@ contains
         real(dp) :: apart(min(size(onsets), size(tighter)))
 
         if (size(onsets) /= size(tighter)) write (report, '(a, i0, a, i0)') &
-            'events             ', size(onsets), '; by the tighter run ', size(tighter)
+            'events             ', size(onsets), '; in the tighter run ', size(tighter)
         if (size(apart) == 0) then
             write (report, '(a)') 'event-time error   -            no events to compare'
             return
         end if
         apart = abs(onsets(:size(apart)) - tighter(:size(apart)))
         write (report, '(5a)') 'event-time error   largest ', rounded_text(maxval(apart), 10, 3), &
-            ', mean ', rounded_text(sum(apart) / size(apart), 10, 3), ' [T], by a tighter run'
+            ', mean ', rounded_text(sum(apart) / size(apart), 10, 3), &
+            ' [T], against the tighter run'
     end subroutine print_event_times
 
     pure character(len=12) function per_step(total, steps) result(text)

@@ -559,10 +559,10 @@ contains
             why = unstable_without_inertia
         else if (status == friction_no_rate) then
             why = 'the contact jumps: friction falls faster than the contact spring unloads. ' &
-                // 'Take a larger alpha_t'
+                // 'Use a larger alpha_t'
         else if (status == friction_bad_state) then
-            why = 'theta leaves the range of numbers: it tells a change of friction as exp(f/b). ' &
-                // 'Take a larger b'
+            why = 'theta leaves the range of numbers, as it grows with exp(mu/b). ' &
+                // 'Use a larger b'
         else if (status /= friction_no_convergence) then
             why = trim(friction_message(status))
         else

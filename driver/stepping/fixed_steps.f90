@@ -143,7 +143,7 @@ contains
         character(len=:), allocatable, intent(out) :: why
 
         call self%explain_status(status, 'Newton''s method finds no balance of forces at the end ' &
-            // 'of the step: take a smaller dt, or adaptive steps (rtol)', why)
+            // 'of the step: use a smaller dt, or adaptive steps (rtol)', why)
     end subroutine why_stopped
 
 end module fixed_steps

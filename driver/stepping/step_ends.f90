@@ -128,8 +128,8 @@ contains
         real(dp), intent(in) :: dt_min   !! shortest step [T]; 0: what round-off of the time allows
         character(len=:), allocatable :: why
 
-        why = 'the error exceeds rtol even in steps as short as the round-off of the time, which ' &
-            // 'is finer in a run that starts (&initial) shortly before'
+        why = 'the error exceeds rtol even in steps as short as the round-off of the time. Start ' &
+            // 'the run (&initial) shortly before this time, where round-off is smaller'
         if (.not. dt_min > 0.0_dp) return
         why = 'the error exceeds rtol even in steps as short as dt_min = ' &
             // trim(adjustl(rounded_text(dt_min, 10, 3)))

@@ -32,7 +32,7 @@ module point_study
         integer :: increments = 0
         integer :: iterations = 0, most_iterations = 0
         integer :: cuts = 0                        !! parts of increments that were halved
-        integer :: snap_backs = 0                  !! increments that saw several equilibria
+        integer :: snap_backs = 0                  !! increments that had several equilibria
         real(dp) :: time = 0.0_dp                  !! reached [T]
         type(peak) :: pressure, shear              !! |t_n|, |t_t| [F/L^2]
     end type outcome
@@ -167,10 +167,10 @@ contains
         write (report, '(a, i0, a, i0)') 'Newton iterations  ', result%iterations, &
             ', most in an increment ', result%most_iterations
         if (result%cuts > 0) write (report, '(a, i0, a)') 'cuts               ', &
-            result%cuts, ' times an increment or a part of it was halved'
+            result%cuts, ' increments or parts of increments were halved'
         if (result%snap_backs > 0) write (report, '(a, i0, a)') 'snap-back          ', &
             result%snap_backs, &
-            ' increments saw several equilibria: take more steps or a larger alpha_t'
+            ' increments had several equilibria: use more steps or a larger alpha_t'
         call print_peak('largest pressure   ', result%pressure)
         call print_peak('largest shear      ', result%shear)
         write (report, '(3a)') 'slip               ', &

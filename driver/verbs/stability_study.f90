@@ -67,7 +67,7 @@ contains
             'combinations       ', size(plan%runs), ', rows with steady sliding ', into%sliding
         if (.not. wanted%quiet) write (report, '(3a)') 'table              ', base, '.csv'
         if (into%sliding == 0) write (error_unit, '(5a)') 'stickslip: ', wanted%input, &
-            ': nothing slides steadily; why is in ', base, '.csv'
+            ': nothing slides steadily; the reasons are in ', base, '.csv'
         if (into%rows%failed .or. into%eigenvalues%failed) then
             write (error_unit, '(3a)') 'stickslip: cannot write ', base, '.csv (disk full?)'
             exit_status = exit_failed

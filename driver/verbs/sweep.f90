@@ -75,7 +75,7 @@ contains
             count(mine), found, failures)
         exit_status = merge(exit_failed, exit_done, failures > 0 .or. len(problem) > 0)
         if (failures > 0) write (error_unit, '(3a, i0, a, i0, 2a)') 'stickslip: ', wanted%input, &
-            ': ', failures, ' of ', count(mine), ' combinations failed; why is in ', &
+            ': ', failures, ' of ', count(mine), ' combinations failed; the reasons are in ', &
             results_name(wanted, base)
         if (len(problem) == 0 .and. wanted%plot .and. wanted%parts == 1) call draw_sweep(plan, &
             wanted%output, wanted%stem // '_sweep', &

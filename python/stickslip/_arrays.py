@@ -26,7 +26,7 @@ def numbers(values: Any, what: str) -> np.ndarray:
     except (TypeError, ValueError) as error:
         raise TypeError(f'{what}: numbers are needed ({error})') from None
     except OverflowError:
-        raise ValueError(f'{what}: holds a number larger than any here') from None
+        raise ValueError(f'{what}: has a number that is larger than the largest 64-bit float') from None
 
 
 def number(value: Any, what: str) -> float:
@@ -38,12 +38,12 @@ def number(value: Any, what: str) -> float:
     except (TypeError, ValueError):
         raise TypeError(f'{what} = {value!r}: a number is needed') from None
     except OverflowError:
-        raise ValueError(f'{what}: must be finite, and is larger than any number here') from None
+        raise ValueError(f'{what}: must be finite, and is larger than the largest 64-bit float') from None
 
 
 def row_of(values: Any, what: str) -> np.ndarray:
     """The same in one dimension; ValueError where there are more than one. MATLAB and pandas have rows and columns of two."""
     array = numbers(values, what)
     if max(array.shape, default=1) != array.size:
-        raise ValueError(f'{what} has the shape {array.shape}: one number a sample is needed')
+        raise ValueError(f'{what} has the shape {array.shape}: one number per sample is needed')
     return array.ravel()

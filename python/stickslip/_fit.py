@@ -85,7 +85,7 @@ class Fit:
         return self._targets[record]
 
     def write_namelist(self, path: str | pathlib.Path, record: int = 0) -> None:
-        """Writes an input that `stickslip run` takes as it stands: the model of one of the records."""
+        """Writes an input for `stickslip run`: the model of one of the records."""
         found = ', '.join(f'{name} {self.values[name]:.5g}' for name in self.values)
         self._target(record)
         names = [' '.join(target.analysis.record.name.split()) for target in self._targets]   # in one line
@@ -94,21 +94,21 @@ class Fit:
         pathlib.Path(path).write_text(text + _namelist.written(self.settings(record)), encoding='utf-8')
 
     def predict(self, record: Record) -> dict[str, dict[str, float]]:
-        """Compares a record that need not have been fitted with the model: for the medians over the events of period,
-        drop, peak and slope of the loading the measured one, its error (standard deviation, block bootstrap), the
-        computed one, and its deviation (relative); NaN where the model shows no such events. The record's `settings` say what
-        differs in the model.
+        """Compares the model with a record, which need not be one of those fitted. For period, drop, peak and slope of the
+        loading it returns the measured median over the events, its error (standard deviation, block bootstrap), the computed
+        median, and the relative deviation; NaN if the model has no such events. The `settings` of the record replace those of
+        the model.
 
-        record: with events to compare with, or a RecordError.
+        record: a record with slip events (otherwise RecordError).
         """
         if not isinstance(record, Record):
             raise TypeError('predict: record: an object of stickslip.Record is needed')
         return compare(self._problem, self._candidate, analyse(record, _sense(_namelist.merge(self.model, record.settings))))
 
     def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
-        """Draws record and model on one axis, cycles laid over one another, and what is left over; a row a record.
+        """Draws record and model, the cycles superposed, and the residuals; one row per record.
 
-        path: where to save the picture, PNG, PDF or SVG by its ending. Gives the matplotlib figure.
+        path: where to save the picture, PNG, PDF or SVG by its ending. Returns the matplotlib figure.
         """
         from ._fit_picture import draw
         figure = draw(self)
@@ -145,23 +145,24 @@ def fit(records: Record | Iterable[Record], input: str | pathlib.Path | dict, *,
         most_seconds: float | None = None, checkpoint: str | pathlib.Path | None = None) -> Fit:
     """Finds constants with which the program's slider gives measured records of stick-slip.
 
-    records: one or several; each may change the input for itself, above all its drive.
+    records: one or several; each may have its own settings in place of the input's, for example its drive.
     input: a namelist (name of the file, or its text) or a dict of groups as `run` takes them. Constants that are not
-        free keep its values. Steps are adaptive, in continuous time, whatever its group ``&time`` says; an `rtol` above
-        1e-6 there is taken.
+        free keep its values. Steps are adaptive, in continuous time, whatever its group ``&time`` says; an `rtol`
+        above 1e-6 given there is used.
     free: names of the constants to find: keys of ``&friction``, or of ``&slider``, ``&drive``, ``&initial``, ``&chain`` as
-        'slider.damping', 'slider.stiffness'; settings of the computation are none; and 'velocity_factor', by which the drive velocities of all records are multiplied, where the rig's are not sure.
-    bounds: a factor about the values of the input, or lower and upper bounds by name, where the input need not have a
-        value; all above 0. Of 'velocity_factor', unless by name: 0.8 and 1.25.
-    seed: of the starting points; one seed gives one answer, whatever `jobs` is.
-    starts: points of a Sobol sequence within the bounds that are tried first; a power of 2.
-    jobs: simulations that run at the same time.
-    progress: True: lines on standard error; or a function that takes them; None: lines, if that is a terminal.
-    most_evaluations, most_seconds: stop there with the best so far, and a warning.
-    checkpoint: a file that keeps what has been simulated. If it exists, the search goes on from there.
+        'slider.damping', 'slider.stiffness' (settings of the computation are not allowed); or 'velocity_factor', by which the drive
+        velocities of all records are multiplied, if those of the rig are uncertain.
+    bounds: a factor about the values of the input, or lower and upper bounds by name, for which the input needs no
+        value; all above 0. Default for 'velocity_factor': 0.8 and 1.25.
+    seed: random seed of the starting points; the same seed gives the same result, whatever `jobs` is.
+    starts: number of points of a Sobol sequence within the bounds with which the search begins; a power of 2.
+    jobs: number of simultaneous simulations.
+    progress: True: lines on standard error; or a function that gets each line; None: lines if standard error is a terminal.
+    most_evaluations, most_seconds: limits, at which the search stops with the best result so far and a warning.
+    checkpoint: a file that stores the simulations. If it exists, the search continues from it.
 
-    Raises RecordError where a record cannot be fitted (no sustained stick-slip, too few events, wrong sign, gaps, too
-    much noise), ValueError where bounds or input are wrong; the text says what to do.
+    Raises RecordError if a record cannot be fitted (no sustained stick-slip, too few events, wrong sign, gaps, too
+    much noise), ValueError if bounds or input are wrong; the text says what to do.
     """
     records, free = _listed(records, Record), _listed(free, str)
     if not all(isinstance(record, Record) for record in records):
@@ -219,7 +220,7 @@ def _no_stick_slip(problem: Problem, why: str) -> ValueError:
             check_runs(settings)
         except ValueError as error:
             return type(error)(f'fit: {target.analysis.record.name}, in the middle of the bounds: {error}')
-    why = why or 'no candidate within the bounds shows as many slip events as the records: widen the bounds, or question the model'
+    why = why or 'no candidate within the bounds shows as many slip events as the records: widen the bounds, or check the model'
     return ValueError(f'fit: {why}')
 
 
@@ -244,15 +245,15 @@ def _constant(name: str, base: dict, bounds: float | Mapping[str, tuple[float, f
     group, _, key = name.lower().rpartition('.')
     group = group or 'friction'
     if group not in RIG_GROUPS:
-        raise InputError(f'fit: {name}: free are constants of the surface and the rig, keys of '
-                         f'{", ".join("&" + group for group in RIG_GROUPS)}, and velocity_factor; &{group} has none')
+        raise InputError(f'fit: {name}: only constants of the surface and the rig can be free: keys of '
+                         f'{", ".join("&" + group for group in RIG_GROUPS)}, and velocity_factor, not of &{group}')
     if isinstance(bounds, Mapping):
         if name not in bounds:
             raise InputError(f'fit: no bounds for {name}')
         return _bounded(name, group, key, bounds[name])
     value = base.get(group, {}).get(key)
     if not _is_number(value):
-        raise InputError(f'fit: {name} has no value in the input that bounds could be taken about: give bounds by name')
+        raise InputError(f'fit: {name} has no value in the input for default bounds: give bounds by name')
     if not _is_number(bounds) or not bounds > 1.0:
         raise InputError(f'fit: bounds = {bounds!r}: a factor above 1 is needed, or lower and upper bounds by name')
     return _bounded(name, group, key, (value / bounds, value * bounds))
@@ -279,7 +280,7 @@ def _check_names(free: Sequence[str], bounds: Any) -> None:
     """Refuses a name that stands twice, and bounds of others."""
     full = [name.lower() if '.' in name or name == 'velocity_factor' else f'friction.{name.lower()}' for name in free]
     if len(set(full)) < len(full):
-        raise InputError(f'fit: free = {free}: a name stands there twice')
+        raise InputError(f'fit: free = {free}: a name occurs twice')
     if isinstance(bounds, Mapping) and (others := [name for name in bounds if name not in free]):
         raise InputError(f'fit: bounds of {", ".join(map(str, others))}, which free does not have')
 
@@ -378,10 +379,10 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
     remarks = []
     for constant, x, high, bend in zip(problem.constants, candidate, problem.high, bent):
         if bend > 0.5:
-            remarks.append(f'the response jumps, or bends sharply, within 1 % of {constant.name}: its interval is not to '
-                           'be trusted')
+            remarks.append(f'the response jumps, or bends sharply, within 1 % of {constant.name}: its interval is not '
+                           'reliable')
         if min(x, high - x) < 1e-3:
-            remarks.append(f'{constant.name} ends at its bound: widen it, or question the model')
+            remarks.append(f'{constant.name} ends at its bound: widen the bound, or check the model')
     first = 0
     for target in problem.targets:
         features = slice(first, first + target.values.size)
@@ -395,14 +396,14 @@ def _remarks(problem: Problem, candidate: np.ndarray, bent: np.ndarray, misfit: 
                 remarks.append(f'{name}: the period {target.analysis.period:.3g} is less than {RINGING_TIMES:g} ringing times '
                                f'(of {ringing:.3g} each): small changes of the constants can move the slider to another cycle')
         if target.analysis.scattered:
-            remarks.append(f'{name}: its events scatter, the model\'s do not: medians over the events were fitted')
+            remarks.append(f'{name}: its events scatter, those of the model do not: medians over the events were fitted')
             drive = problem.settings(candidate, target).get('drive', {})
             if 'file' in drive or any(np.ptp(np.ravel(drive.get(key, 0.0))) > 0.0 for key in ('velocity', 'normal')):
-                remarks.append(f'{name}: its drive changes, and the model\'s medians are those of its first events: fit the parts with one '
-                               'velocity and one normal traction as records of their own (start, end)')
+                remarks.append(f'{name}: its drive changes, and the medians of the model are those of its first events: fit each part with one '
+                               'velocity and one normal traction as a separate record (start, end)')
         if target.wander.size:
             remarks.append(f'{name}: from cycle to cycle the force differs by {np.std(target.wander):.3g}, from sample to sample '
-                           f'by {target.analysis.noise:.3g}: its noise lasts; errors are those of such noise')
+                           f'by {target.analysis.noise:.3g}: its noise is correlated in time; the errors include this')
         remarks += _misfit_remarks(problem, candidate, target, misfit[features], by_noise[features])
     return remarks
 
@@ -423,8 +424,8 @@ def _misfit_remarks(problem: Problem, candidate: np.ndarray, target: Target, mis
     names = np.array(target.names)
     parts = {feature: np.sqrt(np.mean(misfit[names == feature]**2)) for feature in dict.fromkeys(target.names)}
     worst = max(parts, key=lambda feature: parts[feature])
-    return [f'{name}: noise does not explain what is left over ({worst} {parts[worst]:.2g} standard deviations): the model '
-            'does not follow all of this record, or the search has not found the best constants; the intervals are the wider for it',
+    return [f'{name}: noise does not explain the residuals ({worst} {parts[worst]:.2g} standard deviations): the model '
+            'does not follow all of this record, or the search has not found the best constants; the intervals are wider because of this',
             *drift]
 
 
@@ -443,7 +444,7 @@ def _drift_remarks(problem: Problem, candidate: np.ndarray, target: Target) -> l
     level, _ = _trend(means_between(analysis.time, analysis.force, measured.middle), means_between(time, force, computed.middle))
     if abs(period) < max(5.0 * error, 0.003):
         return []
-    told = (f'{analysis.record.name}: from its first to its last events the period changes by {period:+.1%}, beside the model\'s, '
+    told = (f'{analysis.record.name}: from its first to its last events the period changes by {period:+.1%} more than that of the model, '
             f'and the mean force by {level:+.1%}: ')
     if analysis.straightened or abs(level) > 0.5 * abs(period):
         return [told + 'the surface, the normal traction or the load cell changes with time. Take a part of the record (start, end), or give '
@@ -481,7 +482,7 @@ def _check_units(target: Target, settings: dict, constants: Sequence[Constant]) 
     if slope > WRONG_UNITS * fastest or slope < slowest / WRONG_UNITS:
         analysis.record.refuse(
             f'between events the force rises by {slope:.4g} per unit of time, but stiffness times velocity is {fastest:.4g}: the '
-            'units of time or force (time_factor, force_factor), the stiffness or the velocity are not those of the record')
+            'units of time or force (time_factor, force_factor), the stiffness or the velocity do not fit the record')
 
 
 UNEXPLAINED = 7.0    # standard deviations of the squared misfit that noise makes, whose tail is long

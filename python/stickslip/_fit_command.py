@@ -30,7 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument('input', type=pathlib.Path, help='namelist: an input of stickslip run with a group &fit')
     parser.add_argument('--output', type=pathlib.Path, help='directory of the results; default: STEM_fit')
     parser.add_argument('--no-plot', action='store_true', help='draw no picture')
-    parser.add_argument('--resume', action='store_true', help='go on from the checkpoint of an interrupted search')
+    parser.add_argument('--resume', action='store_true', help='continue from the checkpoint of an interrupted search')
     given = parser.parse_args(arguments)
     folder = given.output or pathlib.Path(f'{given.input.stem}_fit')
     checkpoint = folder / f'{given.input.stem}.checkpoint'
@@ -38,7 +38,7 @@ def main(arguments: list[str] | None = None) -> int:
         groups = _namelist.groups_of(given.input)
         told = _checked(groups.pop('fit', None))
         if given.input.resolve() == (folder / f'{given.input.stem}.nml').resolve():
-            raise InputError(f'--output {folder}: the results would take the place of the input: choose another directory')
+            raise InputError(f'--output {folder}: the results would overwrite the input: choose another directory')
         records = _records(told, given.input.parent)
         folder.mkdir(parents=True, exist_ok=True)
         if not given.resume:
@@ -53,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         return _fail(given.input, error, 1)
     except KeyboardInterrupt:
-        print('stickslip-fit: interrupted; --resume goes on from here', file=sys.stderr)
+        print('stickslip-fit: interrupted; --resume continues from here', file=sys.stderr)
         return 1
     try:
         _write(found, records, folder, given.input.stem, not given.no_plot)
@@ -90,7 +90,7 @@ def _checked(told: dict | None) -> dict:
     faults += [f'&fit {key} is missing' for key in ('records', 'free') if key not in told]
     faults += [fault for key, value in told.items() if key in known and (fault := _fault(key, value))]
     if ('lower' in told) != ('upper' in told):
-        faults.append('&fit: lower and upper go together')
+        faults.append('&fit: give both lower and upper')
     elif 'lower' in told and not len(_list(told.get('free'))) == len(_list(told['lower'])) == len(_list(told['upper'])):
         faults.append(f'&fit: {len(_list(told.get("free")))} free constants, {len(_list(told["lower"]))} lower and '
                       f'{len(_list(told["upper"]))} upper bounds')

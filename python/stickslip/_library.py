@@ -46,7 +46,7 @@ version: str = library.friction_version().decode()
 
 
 def message(status: int) -> str:
-    """What a status of the friction routine says, in one line (docs/user_guide.md, Codes). status: a whole number."""
+    """The text of a status of the friction routine, in one line (docs/user_guide.md, Status codes). status: a whole number."""
     try:
         return library.friction_message(_int(operator.index(status))).decode()
     except TypeError:

@@ -21,7 +21,7 @@ NAME = re.compile(r'[a-z_]\w*(\(\s*\d+\s*\))?', re.IGNORECASE | re.ASCII)   # of
 
 
 class InputError(ValueError):
-    """An input that breaks rules; the text lists every fault with its line, group, key, value and rule."""
+    """An invalid input; the text lists all errors with line, group, key, value and rule."""
 
 
 def merge(base: Settings, other: Settings) -> Settings:

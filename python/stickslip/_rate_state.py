@@ -27,20 +27,20 @@ def fit_rate_and_state(time: ArrayLike, friction: ArrayLike, *, changes: ArrayLi
     time: of the samples, increasing [T]; at least 50, and 10 in each piece.
     friction: shear over normal traction there [-].
     changes: times at which the drive changes its velocity [T], within the record.
-    displacement: of the load point, at the same times [L]: gives the velocities, and the changes to a part of a sample
-        (where straight lines through the samples on either side meet); or
+    displacement: of the load point, at the same times [L]: determines the velocities, and the times of the changes to a part of
+    a sample (where straight lines through the samples on either side meet); or
     velocity: of each piece, one more than changes [L/T]; 0 is a hold.
-    bounds: of a, b [-], d_c [L], stiffness [1/L], by name, 0 < lower < upper; the others are taken from the record, far apart.
+    bounds: of a, b [-], d_c [L], stiffness [1/L], by name, 0 < lower < upper; default bounds from the record are wide.
     evolution: 'ageing' or 'slip' law.
     seed: of the starting points, a whole number >= 0.
-    starts: their number, a Sobol sequence within the bounds; a power of 2.
-    changes_error: standard deviation of the times of the changes [T], 0 where they are known for certain. None: what the
-        displacement tells, or that they are known to a sample.
+    starts: number of starting points, a Sobol sequence within the bounds; a power of 2.
+    changes_error: standard deviation of the times of the changes [T], 0 if they are known exactly. None: from the
+    displacement, or the error of times that are known to a sample.
 
-    Beside the four constants, the level and a straight trend of friction with time are found, which the law does not
-    explain, and the moment of each change, without which those around it would count as the stiffness. Errors allow for
-    what is left over being correlated from sample to sample. Raises ValueError where the record cannot be fitted, TypeError
-    where an argument is of the wrong kind; the text says why. Sources of the law: docs/theory.md.
+    In addition to the four constants, the level and a linear trend of friction with time are fitted, and the time of each
+    change, whose error would otherwise appear as an error of the stiffness. Errors include the correlation of the residuals
+    from sample to sample. Raises ValueError if the record cannot be fitted, TypeError if an argument has the wrong type; the
+    text says why. Sources of the law: docs/theory.md.
     """
     least_squares, qmc = needed('scipy.optimize', 'fit').least_squares, needed('scipy.stats', 'fit').qmc
 

@@ -65,15 +65,15 @@ def _without_spikes(time: np.ndarray, friction: np.ndarray, noise: np.ndarray, c
     count = int(np.count_nonzero(spikes))
     if not 0 < count <= max(1, time.size // 50):
         return np.ones_like(spikes), ()
-    return ~spikes, (f'{count} samples stand out from their neighbours and were left out, the first at {time[int(np.argmax(spikes))]:g}',)
+    return ~spikes, (f'{count} samples differ strongly from their neighbours and were omitted, the first at {time[int(np.argmax(spikes))]:g}',)
 
 
 def _check_finite(**given: np.ndarray) -> None:
     """Refuses what is not a finite number, or missing."""
     for name, values in given.items():
         if (bad := ~np.isfinite(values)).any():
-            raise ValueError(f'{name}: value {int(np.argmax(bad)) + 1} of {values.size} is not a finite number; leave samples out '
-                             'of which anything is missing')
+            raise ValueError(f'{name}: value {int(np.argmax(bad)) + 1} of {values.size} is not a finite number; leave out '
+                             'samples with missing values')
 
 
 def _check_physics(friction: np.ndarray, velocity: np.ndarray, changes: np.ndarray) -> None:
@@ -82,12 +82,12 @@ def _check_physics(friction: np.ndarray, velocity: np.ndarray, changes: np.ndarr
         raise ValueError(f'velocity = {velocity.tolist()}: the first must not be 0, and all must go one way')
     if np.any(same := np.abs(np.diff(velocity)) < REST * velocity.max()):
         raise ValueError(f'velocity: {velocity[int(np.argmax(same))]:g} before and after the change at {changes[int(np.argmax(same))]:g}: '
-                         'where it stays as it is there is no change')
+                         'at a change the velocity must differ')
     middle = float(np.median(friction))
     if middle < 0.0:
-        raise ValueError(f'friction: its median, {middle:.3g}, is negative: it acts against the drive. Turn the sign of one of them')
+        raise ValueError(f'friction: its median, {middle:.3g}, is negative under a forward drive: reverse the sign of one of them')
     if middle > MOST_FRICTION:
-        raise ValueError(f'friction: its median is {middle:.3g}: shear over normal traction is needed, not a traction, and not per cent')
+        raise ValueError(f'friction: its median is {middle:.3g}: shear over normal traction is needed, neither a traction nor per cent')
 
 
 def _noise(time: np.ndarray, friction: np.ndarray, edges: np.ndarray) -> np.ndarray:
@@ -122,7 +122,7 @@ def _lines(time: np.ndarray, displacement: np.ndarray, edges: np.ndarray) -> tup
         change = velocity[i + 1] - velocity[i]
         meet = time[0] + (lines[i + 1][1] - lines[i][1]) / (lines[i][0] - lines[i + 1][0]) if change != 0.0 else np.inf
         if not abs(meet - moment) < 0.1 * (edges[-1] - edges[0]):
-            raise ValueError(f'displacement: does not change its velocity near {moment:g}, as changes says')
+            raise ValueError(f'displacement: its velocity does not change near {moment:g}, the time in changes')
         meet, error = _meet(time, displacement, (begin, meet, end))
         moments.append(meet)
         errors.append(error)

@@ -23,8 +23,8 @@ WAY = 12              # steps to the end of an interval, at most
 CLOSE = 0.1           # standard deviations to which the end of an interval is found
 MOST_LAGS = 1000      # samples over which what is left over is looked at for lasting
 LEAST_PARTS = 45     # of the record, as long as what is left over lasts: with fewer, errors are known badly
-NO_RUN = ('no constants within the bounds give a run that ends: where the spring is softer than friction weakens, sliding without mass is '
-          'unstable; give other bounds')
+NO_RUN = ('no constants within the bounds give a complete run: sliding without mass is unstable if the spring is softer than the fall of '
+          'friction; give other bounds')
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class RateStateFit:
         return '\n'.join([*lines, *(f'warning: {warning}' for warning in self.warnings)])
 
     def plot(self, path: str | pathlib.Path | None = None) -> matplotlib.figure.Figure:
-        """Draws record and model, and what is left over. path: where to save the picture. Gives the figure."""
+        """Draws record and model, and the residuals. path: where to save the picture. Returns the figure."""
         figure = needed('matplotlib.figure', 'fit').Figure(figsize=(8, 5), layout='constrained')
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         above.plot(self.time, self.friction, lw=0.5, color='0.6', label='measured')
@@ -116,16 +116,16 @@ def _remarks(search: Search, at: np.ndarray, misfit: np.ndarray) -> list[str]:
     remarks = [*search.record.warnings]
     remarks += [f'{name} ends at its bound' for name, ends in zip(NAMES, search.at_bound(at)) if ends]
     late, changes = at[len(NAMES):], search.record.changes
-    remarks += [f'the change at {changes[i]:.8g} fits best {EARLY_LATE:g} standard deviations away, at {found:.8g}: friction answers at '
-                'another time than it was given for the drive, and the constants, the stiffness above all, are wrong where this time is; '
+    remarks += [f'the change at {changes[i]:.8g} fits best {EARLY_LATE:g} standard deviations away, at {found:.8g}: friction changes at '
+                'another time than the one given. If that time is wrong, so are the constants, above all the stiffness: '
                 'give changes_error if it is not known to a sample'
                 for i, found in enumerate(search.record.moved(late)) if abs(late[i]) > 0.9 * EARLY_LATE]
     if (rms := float(np.sqrt(np.mean(misfit**2)))) > 2.0:
-        remarks.append(f'what is left over is {rms:.2g} times the noise from sample to sample: the law does not explain all of '
-                       'it, or the noise lasts')
+        remarks.append(f'the residuals are {rms:.2g} times the noise from sample to sample: the law does not explain all of them, '
+                       'or the noise is correlated in time')
     if (lasting := _lasts(misfit)) > misfit.size / LEAST_PARTS:
-        remarks.append(f'what is left over lasts for {lasting:.0f} samples, a {misfit.size / lasting:.0f}th of the record: errors of d_c and '
-                       'a - b, which such noise looks like, may be twice those given')
+        remarks.append(f'the residuals are correlated over {lasting:.0f} samples, a {misfit.size / lasting:.0f}th of the record: such noise looks '
+                       'like the effect of d_c and a - b, whose errors may be twice those given')
     return remarks
 
 

@@ -17,14 +17,14 @@ LEAST_PROPS = 8   # that the library's slip rates ask for
 
 
 class Rates(NamedTuple):
-    """What `rates` gives. For one point the arrays lack the first dimension, and `status` is an int."""
+    """Result of `rates`. For one point the arrays lack the first dimension, and `status` is an int."""
 
     rates: np.ndarray    #: (n, 8) d(state)/dt; that of the contact's status is 0; NaN where status < 0
     status: np.ndarray   #: (n,) 0, or < 0 refused: `message(status)`; -11 where slip starts with a jump and has no rate
 
 
 class SlipRates(NamedTuple):
-    """What `slip_rates` gives, in the shape of its arguments."""
+    """Result of `slip_rates`, in the shape of its arguments."""
 
     rate: np.ndarray         #: slip rate, >= 0 [L/T]; NaN where status < 0
     theta_rate: np.ndarray   #: d(theta)/dt at that slip rate [-]; NaN where status < 0
@@ -32,14 +32,14 @@ class SlipRates(NamedTuple):
 
 
 def rates(velocity: ArrayLike, law: Law, state: ArrayLike) -> Rates:
-    """Rates of a contact's state, to which `update` tends as its increment of time tends to 0 (docs/theory.md, section 10).
+    """Rates of a contact's state, to which `update` converges as its time increment tends to 0 (docs/theory.md, section 10).
 
     velocity: relative velocity, normal, tangential 1[, tangential 2] [L/T]; shape (ndir,), or (n, ndir) for n points,
         with ndir 2 or 3.
     law: an object of `stickslip.laws`.
-    state: shape (8,) or (n, 8), as `update` gives it; not changed.
+    state: shape (8,) or (n, 8), as `update` returns it; not changed.
 
-    A bad state or velocity is a negative status of that point; wrong shapes are a ValueError.
+    A point with an invalid state or velocity has a negative status; wrong shapes raise ValueError.
     """
     require_law(law, own=False)
     velocity, state = numbers(velocity, 'velocity'), numbers(state, 'state')
@@ -68,9 +68,9 @@ def slip_rates(tau: ArrayLike, pressure: ArrayLike, law: Law | AtPoints, theta: 
     theta: state of the surface, > 0 [T].
     damping: radiation damping, >= 0, for instance G/(2 c_s) [F T/L^3].
 
-    tau, pressure and theta are numbers or arrays of shapes that go together (numpy's broadcasting); with a law at n points
-    their shape is (n,). Bad input at a point is a negative status there and harms no other. Releases the interpreter's
-    lock; more than 2000 points are shared out among OpenMP's threads.
+    tau, pressure and theta are numbers or arrays that can be broadcast together; with a law at n points
+    their shape is (n,). A point with invalid input has a negative status; other points are not affected. Releases the
+    interpreter's lock; more than 2000 points are divided among OpenMP threads.
     """
     require_law(law, own=True)
     points = (len(law),) if isinstance(law, AtPoints) else ()

@@ -23,9 +23,9 @@ class Record:
     """A measured force of the drive spring.
 
     time: when the force was measured, increasing [T]; force: there, positive when the spring pulls the way the drive
-    goes [F]; settings: what of the model's input differs for this record, as groups of keys, for instance
-    ``{'drive': {'velocity': 2.0}, 'slider': {'stiffness': 5.0}}``; name: of messages and pictures; from_rest: does the
-    record begin in the first loading of a slack spring, of a block that was at rest, or shortly before? None: found out.
+    goes [F]; settings: keys of the model's input that differ for this record, by groups, for instance
+    ``{'drive': {'velocity': 2.0}, 'slider': {'stiffness': 5.0}}``; name: for messages and pictures; from_rest: does the
+    record begin in, or shortly before, the first loading of a slack spring, with the block at rest? None: detected.
     """
 
     time: np.ndarray
@@ -48,10 +48,9 @@ class Record:
              from_rest: bool | None = None) -> Record:
         """Reads a record from a table (CSV or other separated text with a header), or from a MATLAB file (.mat).
 
-        time, force: names of the columns, as they are written, or without regard to case or to a unit behind them, if no
-        other column could be meant; time_factor, force_factor: multiply what is read, for other units; force_offset: added
-        to the force afterwards [F]; start, end: the part of the record to take, in its own time [T]; the rest as for
-        `Record`.
+        time, force: names of the columns, exact, or ignoring case and a unit after the name, if only one column matches;
+        time_factor, force_factor: factors for the values read, for other units; force_offset: added to the force
+        afterwards [F]; start, end: the part of the record to use, in its own time [T]; the others as for `Record`.
         """
         if not isinstance(path, (str, os.PathLike)):
             raise TypeError(f'path = {path!r}: the name of a file is needed')
@@ -450,7 +449,7 @@ def _without_spikes(record: Record, force: np.ndarray, noise: float) -> tuple[np
     count = int(np.count_nonzero(spikes))
     if not 0 < count <= max(1, force.size // 50):
         return force, []
-    return np.where(spikes, middle, force), [f'{record.name}: {count} samples stand out from their neighbours and were left out, '
+    return np.where(spikes, middle, force), [f'{record.name}: {count} samples differ strongly from their neighbours and were omitted, '
                                              f'the first at {record.time[int(np.argmax(spikes))]:g}']
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class RunError(RuntimeError):
-    """A run that ended before its time; `run` holds what was computed before."""
+    """A run that failed before its end; `run` has the results up to there."""
 
     def __init__(self, why: str, run: Run) -> None:
         super().__init__(why, run)
@@ -31,7 +31,7 @@ class RunError(RuntimeError):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Run:
-    """What a run found: the columns of the program's files (docs/driver.md)."""
+    """Results of a run: the columns of the program's files (docs/driver.md)."""
 
     table: pandas.DataFrame            #: time series; row 0 is the initial state
     events: pandas.DataFrame           #: one row a slip event; of a chain those of its mean force, which `summary` counts
@@ -70,8 +70,8 @@ def run(input: str | pathlib.Path | Mapping[str, Any]) -> Run:
         ``friction`` may be a law: ``{'friction': law, 'slider': {...}, 'drive': {...}, 'time': {...}}``. Keys, units
         and defaults: docs/driver.md.
 
-    Raises InputError with every fault of the input, RunError where the run fails. Warnings of the program are in
-    `warnings` and are given as Python warnings, too. Several runs may go on at once, each in its thread.
+    Raises InputError with all errors of the input, RunError if the run fails. Warnings of the program are in `warnings`
+    and are also issued as Python warnings. Several runs may run at once, each in its thread.
     """
     pandas = needed('pandas', 'run')
     text, name = _namelist.named_text(input)

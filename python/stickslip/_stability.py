@@ -19,19 +19,19 @@ VERDICTS = ('none', 'stable', 'neutral', 'unstable')
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Stability:
-    """What becomes of small disturbances of steady sliding."""
+    """Growth of small disturbances of steady sliding."""
 
     table: pandas.DataFrame          #: one row a piece of the programme in which the drive moves: the columns of STEM_stability.csv
     eigenvalues: list[np.ndarray]    #: of each row, complex, the one that grows fastest first [1/T]
 
 
 def stability(input: str | pathlib.Path | Mapping[str, Any]) -> Stability:
-    """Tells whether steady sliding of the program's slider is stable, and at which stiffness, velocity, damping and mass that changes.
+    """Finds whether steady sliding of the program's slider is stable, and at which stiffness, velocity, damping and mass this changes.
 
     input: as for `run`.
 
-    Raises InputError with every fault of the input. Where there is no steady sliding the row says so: `stability` is 'none', its
-    numbers are NaN, and `reason` tells why.
+    Raises InputError with all errors of the input. If there is no steady sliding, `stability` of the row is 'none', its numbers are
+    NaN, and `reason` says why.
     """
     pandas = needed('pandas', 'run')
     output = _program.steady_sliding(*_namelist.named_text(input))

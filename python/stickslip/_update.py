@@ -43,7 +43,7 @@ _update_point, _ndarray, _new, _nan = _library.update_one, np.ndarray, tuple.__n
 
 
 class Result(NamedTuple):
-    """What an update gives. For one point the arrays lack the first dimension, and `status` is an int."""
+    """Result of an update. For one point the arrays lack the first dimension, and `status` is an int."""
 
     traction: np.ndarray   #: (n, ndir) transmitted traction, tension positive [F/L^2]; NaN where status < 0
     tangent: np.ndarray    #: (n, ndir, ndir), d(traction i)/d(du j), unsymmetric [F/L^3]; NaN where status < 0
@@ -56,16 +56,16 @@ def update(du: ArrayLike, dt: float, law: Law | AtPoints, state: ArrayLike | Non
 
     du: increment of relative displacement, normal, tangential 1[, tangential 2] [L]; shape (ndir,), or (n, ndir) for n
         points, with ndir 2 or 3. An array in C order, or in Fortran order (component-major), of 64-bit floats is used
-        where it lies; others are copied.
+        without a copy; others are copied.
     dt: increment of time, >= 0 [T].
-    law: an object of `stickslip.laws`; one at n points (`Law.at_points`) has constants of its own at each.
-    state: shape (8,) or (n, 8), at the start of the increment, as an earlier result gave it; None: virgin points. It is
-        left as it is.
-    out: an earlier result of the same shapes and order whose arrays are written again, which saves the time that new
-        memory takes. Its `state` may be the `state` given here.
+    law: an object of `stickslip.laws`, or of `Law.at_points` for constants that differ from point to point.
+    state: shape (8,) or (n, 8), at the start of the increment, as in an earlier result; None: virgin points. It is
+        not changed.
+    out: an earlier result of the same shapes and order, whose arrays are overwritten, which saves the allocation of
+        memory. Its `state` may be the `state` given here.
 
-    Results have the order of `du`. A bad increment or state is a negative status of that point and harms no other; wrong
-    shapes are a ValueError. Releases the interpreter's lock, so that threads run side by side.
+    Results have the order of `du`. A point with an invalid increment or state has a negative status, and other points are not
+    affected; wrong shapes raise ValueError. Releases the interpreter's lock, so that several threads can run in parallel.
     """
     if type(du) is not _ndarray or du.dtype is not _FLOAT:
         du = numbers(du, 'du')

@@ -2,9 +2,9 @@
 
 There is a class for each law of the library, made from the library's own table when this module is loaded: `Subloading`,
 `Coulomb`, `StaticKinetic`, `RateAndState`, `SlipWeakening`, `SlipWeakeningHealing`, `FlashHeating`, `LinkerDieterich`;
-``help(stickslip.laws.Coulomb)`` tells its constants. Every law takes the stiffnesses of the contact, ``alpha_n`` and
-``alpha_t`` [F/L^3], its own constants, and the options of docs/law_options.md. A constant out of its range is a
-ValueError in the library's own words.
+``help(stickslip.laws.Coulomb)`` lists its constants. Every law takes the stiffnesses of the contact, ``alpha_n`` and
+``alpha_t`` [F/L^3], its own constants, and the options of docs/law_options.md. A constant out of its range raises a
+ValueError with the rule of the library.
 """
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Law:
         except (TypeError, ValueError):
             raise TypeError(f'{type(self).__name__}: {constant.name} = {value!r} is not a number') from None
         except OverflowError:
-            raise ValueError(f'{type(self).__name__}: {constant.name} is larger than any number here') from None
+            raise ValueError(f'{type(self).__name__}: {constant.name} is larger than the largest number') from None
         if not math.isfinite(number):
             raise ValueError(f'{type(self).__name__}: {constant.name} = {number}: must be finite')
         return number
@@ -80,8 +80,8 @@ class Law:
     def at_points(self, **constants: ArrayLike) -> AtPoints:
         """The same law with other values of some constants at each of n points, for `update` and `slip_rates`.
 
-        constants: numbers by name, n of each; the others, and all choices, are those of this law. A constant that has a
-        default, and no value here, follows those of its point.
+        constants: n numbers for each name; other constants, and all choices, are those of this law. The default of a constant
+        without a value may depend on other constants of its point.
         """
         return AtPoints(self, constants)
 
@@ -98,8 +98,8 @@ class Law:
 class AtPoints:
     """A law whose constants vary from point to point (`Law.at_points`).
 
-    law: where all else is taken from. props: the constants in the order of the friction routine, component-major: shape
-    (constants, n), read-only. ``len()`` is n. A constant out of its range is a ValueError that names the first such point.
+    law: the law of the points, with the other constants. props: the constants in the order of the friction routine, component-major: shape
+    (constants, n), read-only. ``len()`` is n. A constant out of its range raises a ValueError with the first such point.
     """
 
     def __init__(self, law: Law, constants: dict[str, ArrayLike]) -> None:

@@ -123,7 +123,7 @@ class Damper(Program):
         base = {'friction': "law='coulomb', mu=0.3", 'mass': 1e-3, 'damping': 0.1, 'more': '', 'time': 'rtol=1e-6'}
         cases = (({'more': '&chain n_blocks=3, coupling=1 /'}, 'eta_t = 0.2: needs fixed steps (&time dt) in a chain\n'),
                  ({'time': 'rtol=1e-6, beta=0.3'}, 'needs fixed steps (&time dt) beside beta, gamma and rho_infinity'),
-                 ({'friction': "law='coulomb', mu=0.3, contact='rigid'"}, 'has no spring for a damper'),
+                 ({'friction': "law='coulomb', mu=0.3, contact='rigid'"}, 'has no contact spring, and so no damper'),
                  ({'mass': 0, 'damping': 0}, 'needs a mass or a damping'),
                  ({'friction': "law='static_kinetic', mu_s=0.4, mu_k=0.2, d_c=0.1"}, 'must exceed d_c (mu_s - mu_k)'))
         for changes, words in cases:

@@ -108,7 +108,7 @@ class Programme(Columns):
 
     def test_commas_that_may_part_thousands_are_refused(self):
         rows = '0,0,10\n10,100,10\n20,"1,000",10\n30,"2,500",10\n'
-        self.assertIn('line 4: displacement = \'1,000\': is its comma a decimal mark, or does it part thousands?',
+        self.assertIn('line 4: displacement = \'1,000\': is its comma a decimal mark or a thousands separator?',
                       self.run_text(self.with_file('time,displacement,normal\n' + rows), verb='check').stderr)
         for content in (rows.replace('10\n30', '"10,5"\n30'), rows.replace('0,0,10', '"0,000",0,10')):   # one tells of all
             self.assert_done(self.run_text(self.with_file('time,displacement,normal\n' + content), verb='check'))
@@ -556,7 +556,7 @@ class ContinuousTime(Columns):
         onsets = []
         for rtol in ('1e-6', '1e-8', '1e-10'):
             self.summary(self.textbook.replace('1e-8 /', rtol + ' /').replace('t_end=4', 't_end=1.5'), 'steps',
-                         warning="Take contact = 'rigid' in &friction and rtol in &time")
+                         warning="Use contact = 'rigid' in &friction and rtol in &time")
             onsets.append([event['onset'] for event in self.events()])
         for first, second, third in zip(*onsets):
             self.assertLess(abs(second - third), 1e-5)
@@ -725,7 +725,7 @@ class ContinuousTime(Columns):
     def test_what_leaves_the_velocity_of_a_block_without_mass_open_is_refused(self):
         for law, constants in (('coulomb', 'mu = 0.6'), ('slip_weakening', 'mu_s = 0.6, mu_k = 0.4, d_c = 1')):
             self.refused(self.MASSLESS.format(law=law, constants=constants, contact='rigid', damping=0, sign=''),
-                         "&slider damping = 0: or a mass must be there beside contact = 'rigid'")
+                         "&slider damping = 0: or mass must be > 0 with contact = 'rigid'")
         for contact in ('rigid', 'elastic'):
             self.refused(self.MASSLESS.format(law='static_kinetic', constants='mu_s = 0.6, mu_k = 0.4, d_c = 2', contact=contact,
                                               damping=0.39, sign=''),
@@ -773,7 +773,7 @@ class ContinuousTime(Columns):
 
     def test_a_rigid_contact_is_refused_where_it_makes_no_sense(self):
         self.refused(namelist({('friction', 'contact'): "'rigid'", ('time', 'rtol'): '1e-6'}),
-                     "&friction contact = 'rigid': is not for the law subloading, whose R needs the contact spring")
+                     "&friction contact = 'rigid': is not possible for the law subloading, whose R needs the contact spring")
         self.refused(law_namelist('coulomb').replace('law =', "contact = 'rigid', law ="),
                      "&friction contact = 'rigid': needs adaptive steps (&time rtol) of one block, without beta, gamma and rho_infinity")
 
@@ -880,7 +880,7 @@ class AdaptiveSteps(Columns):
         self.refused(namelist({('output', 'every'): '-1', ('time', 'rtol'): '1e-6'}), '&output every = -1: must be > 0')
         self.refused(namelist({('output', 'every'): '1e-12', ('output', 'interval'): '2', ('time', 'rtol'): '1e-6'}),
                      '&output every = 1e-12: give it or interval, not both',
-                     '&output every = 1e-12: makes more rows than can be counted')
+                     '&output every = 1e-12: gives more than 1e9 rows')
 
     def test_steps_stay_within_their_bounds(self):
         run = self.run_columns(namelist({('time', 'rtol'): '1e-3', ('time', 'dt_max'): '2e-3'}, [('time', 'dt')]))
@@ -1046,7 +1046,7 @@ class AdaptiveSteps(Columns):
         self.refused(namelist({('time', 'beta'): '0'}), '&time beta = 0: must be from 0.01 to 1\n')
         for changes in ({('friction', 'mu_s'): '0', ('friction', 'mu_k'): '0'}, {('drive', 'normal'): '0'}):
             self.refused(namelist({('time', 'rtol'): '1e-6', **changes}),
-                         '&time rtol = 1e-6: is a part of the static friction force, which is 0 here')
+                         '&time rtol = 1e-6: is relative to the static friction force, which is 0 here')
         self.refused(namelist({('time', 'rtol'): '1', ('time', 'dt_min'): '1', ('time', 'dt_max'): '0.5'}),
                      '&time rtol = 1: must be from', '&time dt_min = 1: must not exceed dt_max')
         self.refused(namelist({('time', 'rho_infinity'): '1.5', ('time', 'beta'): '0.25',
@@ -1069,15 +1069,15 @@ class BadProgramme(Columns):
                 ('0,1\n1,1\n', 'line 1: no line of column names'),
                 ('0,1\ntime,velocity\n1,1\n2,1\n', 'line 1: numbers stand before the line of column names'),
                 ('time [s],time [min],velocity\n0,0,1\n1,1,1\n', "line 1: columns 'time [s]' and 'time [min]' may both"),
-                ('time,velocity\n0,1\n1\n', 'line 3: has not as many cells as the header: 1 for 2'),
-                ('time,velocity\n0,1\n1,1,5\n', 'line 3: has not as many cells as the header: 3 for 2'),
-                ('time,velocity,\n0,1,5,\n1,2,5,\n', 'line 2: has not as many cells as the header: 4 for 2 (cells with a dec'),
-                ('time,velocity,note\n0,1,a\n1,1.25,b\n2,1.', 'line 4: has not as many cells as the header: 2 for 3, and the row'),
-                ('time velocity note\n0 1 a\n1 1.25\n2 1 b\n', 'line 3: has not as many cells as the header: 2 for 3'),
-                ('time,velocity\n0,0,1\n1,1,5\n', 'line 2: has not as many cells as the header: 3 for 2 (cells with a dec'),
-                ('time,velocity\n0,1\n,,\n2,1\n', 'line 3: the row is empty, and there are others behind it'),
+                ('time,velocity\n0,1\n1\n', 'line 3: does not have as many cells as the header: 1 for 2'),
+                ('time,velocity\n0,1\n1,1,5\n', 'line 3: does not have as many cells as the header: 3 for 2'),
+                ('time,velocity,\n0,1,5,\n1,2,5,\n', 'line 2: does not have as many cells as the header: 4 for 2 (cells with a dec'),
+                ('time,velocity,note\n0,1,a\n1,1.25,b\n2,1.', 'line 4: does not have as many cells as the header: 2 for 3, and the row'),
+                ('time velocity note\n0 1 a\n1 1.25\n2 1 b\n', 'line 3: does not have as many cells as the header: 2 for 3'),
+                ('time,velocity\n0,0,1\n1,1,5\n', 'line 2: does not have as many cells as the header: 3 for 2 (cells with a dec'),
+                ('time,velocity\n0,1\n,,\n2,1\n', 'line 3: the row is empty, and other rows follow it'),
                 ('time,velocity,x\n0,1,\n1,,2\n', "line 3: velocity = '': must be a finite number, and the cell is empty"),
-                ('time,velocity\n0,1\n1,1e-999\n', "line 3: velocity = '1e-999': is smaller than any number"),
+                ('time,velocity\n0,1\n1,1e-999\n', "line 3: velocity = '1e-999': is not 0, but below the smallest number"),
                 ('time,velocity\n0,1\n1,1\x00\n', 'line 3: holds a character 0'),
                 ('time,velocity\n0,1\n1,"1\n2,1\n', 'line 3: a quote is not closed'),
                 ('"time\n[s]","velocity\n[m/s]"\n0,1\n1,1\n', 'line 1: a quote is not closed in this line'),
@@ -1110,7 +1110,7 @@ class BadProgramme(Columns):
                                     (('drive', 'normal_factor'), '2')), "line 1: no column 'normal' for its factor")
         self.refused(self.with_file(content, (('drive', 'velocity_column'), "'Weg'"), (('drive', 'displacement_column'), "'Weg'"),
                                     (('drive', 'time_factor'), '0')),
-                     "&drive displacement_column = 'Weg': cannot stand beside velocity_column",
+                     "&drive displacement_column = 'Weg': cannot be given together with velocity_column",
                      '&drive time_factor = 0: must be a number other than 0')
         self.refused(namelist({('drive', 'time_column'): "'t'", ('drive', 'normal_factor'): '2'}),
                      "&drive time_column = 't': needs a file", '&drive normal_factor = 2: needs a file')
@@ -1128,7 +1128,7 @@ class BadProgramme(Columns):
 
     def test_file_that_is_not_there_and_lists_beside_it(self):
         self.refused(namelist({('drive', 'file'): "'none.csv'", ('drive', 'duration'): '1'}),
-                     '&drive velocity = 1: cannot stand beside file', '&drive duration = 1: cannot',
+                     '&drive velocity = 1: cannot be given together with file', '&drive duration = 1: cannot',
                      "&drive file = 'none.csv'")
         self.refused(namelist({('drive', 'file'): '12'}), '&drive file = 12: must be text in quotes')
 

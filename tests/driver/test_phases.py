@@ -172,7 +172,7 @@ class Phases(Program):
                     &drive velocity=0.1, {load} /
                     &time t_end=10, rtol=1e-6 / """
                 one = self.table(text)
-                two = self.table(text + '&chain n_blocks=2, coupling=5 /', 'counts as open before' * ('alpha=0.4' in law))
+                two = self.table(text + '&chain n_blocks=2, coupling=5 /', 'counts as open too early' * ('alpha=0.4' in law))
                 self.assertAlmostEqual(two[0][-1]['displacement'], one[0][-1]['displacement'], delta=3e-3 * one[0][-1]['displacement'])
                 for energy in ('drive', 'dissipated'):
                     self.assertAlmostEqual(two[1][energy], 2 * one[1][energy], delta=1.5e-3 * two[1]['drive'])

@@ -302,19 +302,19 @@ class BadInput(Point):
         self.refused(namelist({'target_t1': '0, 1e200'}), '&point target_t1 = 1e200: must not exceed 1e100 in size')
 
     def test_more_increments_than_can_be_counted(self):
-        self.refused(namelist({'cycles': '1000000000'}), '&point cycles', 'more increments')
+        self.refused(namelist({'cycles': '1000000000'}), '&point cycles', 'more than 2147483647 increments')
 
     def test_file_and_lists_exclude_each_other(self):
         (self.folder / 'path.csv').write_text('time,u_n,u_t1\n1,-0.01,0\n')
-        self.refused(namelist({'file': "'path.csv'"}), '&point duration: must not be given beside file',
-                     '&point target_n = -10: must not be given beside file')
+        self.refused(namelist({'file': "'path.csv'"}), '&point duration: cannot be given together with file',
+                     '&point target_n = -10: cannot be given together with file')
         self.refused(namelist({'substeps': '3'}), '&point substeps = 3: needs a file')
 
     def test_columns_that_are_not_there_or_exclude_each_other(self):
         (self.folder / 'path.csv').write_text('time,Load,Shear\n0,0,0\n1,1,1\n')
         text = FRICTION + "&point ndir=2 file='path.csv' "
         self.refused(text + "u_n_column='a' t_n_column='b' u_t1_column='c' t_t1_factor=2 /",
-                     "&point t_n_column = 'b': cannot stand beside u_n_column")
+                     "&point t_n_column = 'b': cannot be given together with u_n_column")
         self.refused(text + "u_n_column='a' t_t1_factor=2 u_t1_column='Shear' /", "line 1: column 'a' is missing")
         self.refused(text + "t_n_column='Load', u_t1_column='Shear', t_t1_factor=2 /", "line 1: no column 't_t1' for its factor")
         self.refused(namelist({'time_factor': '2'}), '&point time_factor = 2: needs a file')
@@ -331,12 +331,12 @@ class BadInput(Point):
                                             'choose one by its key, u_n_column or t_n_column', "'u_t1' or 't_t1'"]),
                 ('time,u_n,u_n\n', ["column 'u_n' is given twice"]),
                 ('time,u_n,u_t1\n1,2\n1,2,3,4\n1,a,\n1,NaN,1-3\n',
-                 ['line 2: has not as many cells', 'line 3: has not as many', "line 4: u_n = 'a': must be",
+                 ['line 2: does not have as many cells', 'line 3: does not have as many', "line 4: u_n = 'a': must be",
                   "line 4: u_t1 = '': must be a finite number", "line 5: u_n = 'NaN': must be a finite",
                   "line 5: u_t1 = '1-3': must be a finite number"]),
                 ('time,u_n,u_t1\n-1,0,1\n3,0,0\n2,0,0\n', ['line 2: time must be >= 0',
                                                            'line 4: time must not go back']),
-                ('time,u_n,u_t1\n' + 5000 * '1,', ['line 2: has not as many cells as the header: 5001 for 3'])):
+                ('time,u_n,u_t1\n' + 5000 * '1,', ['line 2: does not have as many cells as the header: 5001 for 3'])):
             (self.folder / 'path.csv').write_text(content)
             self.refused(text, *said)
         (self.folder / 'path.csv').write_bytes(bytes(range(256)) * 20)

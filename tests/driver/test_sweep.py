@@ -382,7 +382,7 @@ class Continuing(Sweep):
         self.assertEqual((first.returncode, first.stderr), (0, ''))
         second = self.run_sweep(text, '--part', '2/2')
         self.assertEqual(second.returncode, 1)
-        self.assertIn('1 of 2 combinations failed; why is in case_out/case_sweep_part_2.journal', second.stderr)
+        self.assertIn('1 of 2 combinations failed; the reasons are in case_out/case_sweep_part_2.journal', second.stderr)
 
     def test_more_values_add_to_what_is_there(self):
         self.run_sweep(sweep('drive%velocity', '1, 2'))

@@ -69,7 +69,7 @@ class Warnings(Program):
             self.assertAlmostEqual(float(events[-1]['recurrence_time']), 0.668, delta=0.02, msg=new)
             self.assertAlmostEqual(float(events[-1]['stress_drop']), 20.0, delta=0.6, msg=new)
         pair = text.replace('1.2e6', '1.2e4').replace('t_end=3', 't_end=1.2') + '&chain n_blocks=2, coupling=1e3 /'
-        for time, told in (('dt=1e-3', 'depend on it. Take eta_t above 9.81E+04'), ('rtol=1e-4', 'Take eta_t above 9.81E+04 in fixed steps')):
+        for time, told in (('dt=1e-3', 'depend on it. Use eta_t above 9.81E+04'), ('rtol=1e-4', 'Use eta_t above 9.81E+04 in fixed steps')):
             self.assertTrue(any(line.endswith(told) for line in self.warnings(pair.replace('dt=1e-4', time))), time)
         strong = text.replace('mass=10', 'mass=10, damping=1e3').replace('t_end=3', 't_end=2')
         self.assertIn('sticks in between', self.warnings(strong)[0])   # friction 24.4, 25 % too large
@@ -81,18 +81,18 @@ class Warnings(Program):
             &slider mass=2.908e-5, stiffness=4.6, area=0.326, normal_traction=1, normal_mass=1e-5, normal_stiffness=1.96,
                 tilt_stiffness=-1.38 /
             &drive velocity=3.77e-3 / """
-        told = [line for line in self.warnings(text + '&time t_end=12.5, rtol=1e-5, beta=0.25 /') if 'balance of energy' in line]
+        told = [line for line in self.warnings(text + '&time t_end=12.5, rtol=1e-5, beta=0.25 /') if 'energy balance' in line]
         self.assertEqual(len(told), 1)
-        self.assertIn('take adaptive steps (rtol) without beta, gamma and rho_infinity', told[0])
+        self.assertIn('use adaptive steps (rtol) without beta, gamma and rho_infinity', told[0])
         for time in ('rtol=1e-5', 'dt=1e-4'):
             told = self.warnings(text + f'&output interval=1000 /\n&time t_end=12.5, {time} /')
-            self.assertFalse([line for line in told if 'balance of energy' in line])
+            self.assertFalse([line for line in told if 'energy balance' in line])
 
     def test_energy_that_is_out_of_balance_is_told_with_its_part(self):
         lines = self.warnings(CHAIN)
-        told = [line for line in lines if 'balance of energy is open by' in line]
+        told = [line for line in lines if 'energy balance has an error of' in line]
         self.assertEqual(len(told), 1)
-        said = float(told[0].split('open by')[1].split('%')[0])
+        said = float(told[0].split('error of')[1].split('%')[0])
         summary = self.run_text(CHAIN, '--no-plot').stdout
         unbalanced = float(summary.split('unbalanced')[1].split()[0])
         work = float(summary.split('work of the drive')[1].split()[0])
@@ -100,11 +100,11 @@ class Warnings(Program):
         self.assertAlmostEqual(said, 100 * abs(unbalanced / work), delta=0.1)
 
     def test_the_remedy_for_an_open_balance_is_one_that_the_input_has(self):
-        told = [line for line in self.warnings(CHAIN) if 'balance of energy' in line]
-        self.assertTrue(told[0].endswith('take shorter steps (dt), or steps by their error (rtol)'), told)
+        told = [line for line in self.warnings(CHAIN) if 'energy balance' in line]
+        self.assertTrue(told[0].endswith('use shorter steps (dt), or adaptive steps (rtol)'), told)
         told = [line for line in self.warnings(CHAIN.replace('dt=0.01', 'rtol=1e-3, rho_infinity=0.5').replace(
-            't_end=300', 't_end=150')) if 'balance of energy' in line]
-        self.assertTrue(told[0].endswith('take a smaller rtol; what rho_infinity or gamma damps counts as open'), told)
+            't_end=300', 't_end=150')) if 'energy balance' in line]
+        self.assertTrue(told[0].endswith('use a smaller rtol; energy that rho_infinity or gamma damps is part of this error'), told)
 
     def test_a_step_too_long_for_the_slip(self):
         lasts = math.pi * math.sqrt(1e-3)   # of the slider of test_program
@@ -122,7 +122,7 @@ class Warnings(Program):
                 '&drive velocity=0.1, normal_amplitude={}, normal_frequency=0.25 /\n&time t_end=0.5, {} /\n')
         told = self.warnings(text.format(0.405, 1.3, 'dt=1e-2'))
         self.assertEqual(len(told), 1)
-        self.assertIn('(alpha is 27.0 times b) that the contact counts as open before', told[0])
+        self.assertIn('(alpha is 27.0 times b) that the contact counts as open too early', told[0])
         for calm in ((0.1, 1.3, 'dt=1e-2'), (0.405, 0.9, 'dt=1e-2'), (0.405, 1.3, 'rtol=1e-4')):
             self.assertEqual(self.warnings(text.format(*calm)), [])
 

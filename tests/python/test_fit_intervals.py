@@ -24,7 +24,7 @@ class Intervals(VelocitySteps):
             self.assertGreater(np.sqrt(np.mean(np.square(off))), 0.6, part)
         slow = np.convolve(np.random.default_rng(2).normal(size=self.TIME.size + 999), 0.99**np.arange(1000.0), 'valid')
         found = stickslip.fit_rate_and_state(self.TIME, clean + 3e-5 * slow, changes=self.CHANGES, velocity=self.VELOCITY, starts=16)
-        self.assertRegex('\n'.join(found.warnings), 'what is left over lasts for .* may be twice those given')
+        self.assertRegex('\n'.join(found.warnings), 'the residuals are correlated over .* may be twice those given')
 
     def test_intervals_of_what_a_record_does_not_tell_are_open(self):
         """A rig that is too stiff for its stiffness to show, a record too coarse for d_c, a state that evolves over more than the

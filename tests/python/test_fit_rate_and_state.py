@@ -145,7 +145,7 @@ class RateAndState(VelocitySteps):
         struck = friction.copy()
         struck[[77, 300, 555, 700, 1200]] += [0.05, -0.1, 0.02, 0.1, -0.03]
         found = stickslip.fit_rate_and_state(self.TIME, struck, **given)
-        self.assertEqual(found.warnings, ['5 samples stand out from their neighbours and were left out, the first at 7.7'])
+        self.assertEqual(found.warnings, ['5 samples differ strongly from their neighbours and were omitted, the first at 7.7'])
         self.assertEqual(found.time.size, self.TIME.size - 5)
         for name in ('a', 'b', 'd_c'):
             self.assertAlmostEqual(found.values[name] / clean.values[name], 1.0, delta=0.02)
@@ -165,8 +165,8 @@ class RateAndState(VelocitySteps):
                                  ({'velocity': [1.0, np.nan]}, 'all must go one way'), ({'velocity': [2.0, 2.0]}, 'velocity: 2 before and after'),
                                  ({'changes': [np.nan]}, 'changes: value 1 of 1 is not a finite number'),
                                  ({'changes': [5.0], 'velocity': None, 'displacement': t}, 'changes: 6 samples from 0 to 5 are too few'),
-                                 ({'velocity': None, 'displacement': t}, 'displacement: does not change its velocity near 50'),
-                                 ({'velocity': None, 'displacement': 0.0 * t}, 'displacement: does not change its velocity near 50'),
+                                 ({'velocity': None, 'displacement': t}, 'displacement: its velocity does not change near 50'),
+                                 ({'velocity': None, 'displacement': 0.0 * t}, 'displacement: its velocity does not change near 50'),
                                  ({'velocity': None, 'displacement': t[:50]}, '50 displacements for 100 times'),
                                  ({'velocity': None, 'displacement': np.where(t > 9, t, np.nan)}, 'not a finite number'),
                                  ({'bounds': {'a': (0.9e-4, 1e-4), 'b': (0.099, 0.1), 'd_c': (0.01, 0.011), 'stiffness': (0.1, 0.11)}},
@@ -182,7 +182,7 @@ class RateAndState(VelocitySteps):
         """A traction in pascals was fitted, with intervals of no width."""
         t = np.arange(100.0)
         friction = 0.6 + 1e-3 * np.sin(t)
-        for given, words in ((2e7 * friction, 'friction: its median is 1.2e.07: shear over normal'), (100.0 * friction, 'not per cent'),
+        for given, words in ((2e7 * friction, 'friction: its median is 1.2e.07: shear over normal'), (100.0 * friction, 'nor per cent'),
                              (-friction, 'friction: its median, -0.6, is negative'), (0.0 * t + 0.6, 'friction: all values are 0.6'),
                              (np.where(t == 7.0, np.nan, friction), 'friction: value 8 of 100 is not a finite number; leave')):
             with self.assertRaisesRegex(ValueError, words):
