@@ -7,10 +7,10 @@ module block_steps
     use explicit_pairs, only : dormand_prince, explicit_pair, explicit_step
     use free_swing, only : swing
     use friction_mod, only : onset_gradual
-    use phase_changes, only : first_root, root_bracket, switch_values, switches
+    use phase_changes, only : between, first_root, lifts, root_bracket, switch_values, switches
     use rosenbrock, only : growth_rate, rosenbrock_step
-    use slider_rates, only : controlled, elastic, extension, memory, phase_slide, &
-        slider_equations, slip, velocity
+    use slider_rates, only : controlled, elastic, extension, memory, phase_capped, phase_slide, &
+        phase_stick, place, slider_equations, slip, velocity
     use trial_step, only : look_at, trial
     implicit none
     private
@@ -96,8 +96,9 @@ contains
         real(dp) :: way, change   ! of the block, of the contact's elastic displacement [L]
 
         associate (eq => self%block%equations, y => self%block%y)
-            yes = eq%phase == phase_slide .and. eq%mass > 0.0_dp .and. eq%surface%traits%onset &
-                /= onset_gradual .and. tried%last(slip) >= 0.0_dp
+            yes = (eq%phase == phase_capped .or. eq%phase == phase_slide .and. &
+                eq%surface%traits%onset /= onset_gradual) .and. eq%mass > 0.0_dp .and. &
+                tried%last(slip) >= 0.0_dp
             if (.not. yes) return
             way = self%drive%position(t + tried%h) - self%drive%position(t) - (tried%y(extension) &
                 - y(extension))
@@ -219,6 +220,7 @@ contains
 
         call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
         if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
+        if (all(g <= 0.0_dp)) call look_between(self, t, tried, g)
         if (all(g <= 0.0_dp)) return
         which = 0
         share = 2.0_dp
@@ -264,6 +266,94 @@ contains
         tried%switch = which
     end subroutine locate
 
+    !> A phase may end within a step and come back before its end: a traction that just passes the
+    !> strength in a swing, a sliding block that just turns, one that just leaves the base. Then the
+    !> step ends where it has ended most.
+    subroutine look_between(self, t, tried, g)
+        class(block_integrator), intent(inout) :: self
+        real(dp), intent(in) :: t                   !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp), intent(inout) :: g(switches)      !! at its end
+        integer, parameter :: parts = 4
+        real(dp), parameter :: unseen = 0.02_dp     !! part of the tolerated error
+        integer, parameter :: ways(2) = [1, lifts]  !! that are looked for
+        type(trial) :: again
+        real(dp) :: at(switches, 0:parts), least(switches), share, peak
+        logical :: slides   !! to a point at which it stops
+        integer :: i, which
+
+        associate (block => self%block, eq => self%block%equations)
+            slides = eq%phase == phase_capped .or. eq%surface%traits%onset /= onset_gradual
+            if (self%implicit .or. .not. eq%mass > 0.0_dp .or. eq%rests .or. eq%follows_share() &
+                .or. .not. (slides .or. eq%across%free())) return
+            call switch_values(eq, t, block%y, block%first, at(:, 0))
+            do i = 1, parts - 1
+                share = real(i, dp) / parts
+                call switch_values(eq, t + share * tried%h, between(block, tried%h, tried%y, &
+                    tried%last, share), tried%last, at(:, i))
+            end do
+            at(:, parts) = g
+            least = unseen * eq%alpha / self%weights(elastic)
+            least(lifts) = unseen * eq%alpha_n / self%weights(place)
+            if (slides .and. eq%phase > phase_stick .and. .not. eq%damper > 0.0_dp) then
+                least(1) = unseen / (self%weights(extension) * tried%h)
+                at(1, :) = -slip_rates(parts, block%first(slip), (tried%y(slip) - block%y(slip)) &
+                    / tried%h, tried%last(slip))
+            end if
+            which = 0
+            do i = 1, size(ways)
+                call find_peak(parts, at(ways(i), :), share, peak)
+                if (peak > least(ways(i))) which = ways(i)
+                if (which > 0) exit
+            end do
+        end associate
+        if (which == 0) return
+        again = tried
+        again%h = share * tried%h
+        call self%attempt(t, again)
+        if (.not. again%error < huge(again%error)) return
+        if (again%error <= 1.0_dp) then
+            call switch_values(self%block%equations, t + again%h, again%y, again%last, at(:, 0))
+            if (.not. at(which, 0) > 0.0_dp) return
+            g(which) = at(which, 0)
+        end if
+        tried = again
+    end subroutine look_between
+
+    !> Slip rates at even parts of a step: the parabola of its ends and its mean [L/T].
+    pure function slip_rates(parts, first, mean, last) result(rates)
+        integer, intent(in) :: parts
+        real(dp), intent(in) :: first, mean, last   !! [L/T]
+        real(dp) :: rates(0:parts), share
+        integer :: i
+
+        do i = 0, parts
+            share = real(i, dp) / parts
+            rates(i) = first * (1.0_dp - share) * (1.0_dp - 3.0_dp * share) + last * share &
+                * (3.0_dp * share - 2.0_dp) + 6.0_dp * mean * share * (1.0_dp - share)
+        end do
+    end function slip_rates
+
+    !> Where values at even parts of a step have a peak between its ends, by a parabola.
+    pure subroutine find_peak(parts, values, share, peak)
+        integer, intent(in) :: parts
+        real(dp), intent(in) :: values(0:parts)
+        real(dp), intent(out) :: share   !! part of the step
+        real(dp), intent(out) :: peak    !! the value there; without a peak less than any
+        real(dp) :: slope, bend
+        integer :: i
+
+        share = 1.0_dp
+        peak = -huge(peak)
+        i = maxloc(values, dim=1) - 1
+        if (i == 0 .or. i == parts) return
+        slope = 0.5_dp * (values(i + 1) - values(i - 1))
+        bend = values(i + 1) - 2.0_dp * values(i) + values(i - 1)
+        if (.not. bend < 0.0_dp) return
+        share = (real(i, dp) - slope / bend) / parts
+        peak = values(i) - 0.5_dp * slope**2 / bend
+    end subroutine find_peak
+
     !> What a time can tell, in a step that is not a part of one [T].
     pure function told(t, h) result(dt)
         real(dp), intent(in) :: t, h   !! time, length of the step [T]
@@ -273,30 +363,41 @@ contains
         if (is_short(t, h)) dt = 0.0_dp
     end function told
 
-    !> Takes a step that ends just before its phase does again, until it ends just after: the next
-    !> phase starts where this one has ended.
+    !> Takes a step that ends before its phase does again, until it ends just after: the next phase
+    !> starts where this one has ended. A phase that starts at its end, as a contact does that comes
+    !> to rest because its strength grows, may end anywhere in the step.
     subroutine pass(self, t, which, latest, tried)
         class(block_integrator), intent(inout) :: self
         real(dp), intent(in) :: t        !! [T]
         integer, intent(in) :: which     !! way in which the phase ends
         real(dp), intent(in) :: latest   !! length of a step that is long enough [T]
         type(trial), intent(inout) :: tried
-        integer, parameter :: most_tries = 60
+        integer, parameter :: most_tries = 120
+        real(dp), parameter :: close = 1.0e-12_dp
         type(trial) :: again
-        real(dp) :: nudge, g(switches)
+        real(dp) :: nudge, before, g(switches)
+        logical :: passed
         integer :: i
 
         again = tried
-        nudge = max(1.0e-12_dp * tried%h, told(t, latest))
+        before = tried%h   ! the longest step known to end before the phase
+        nudge = max(close * before, told(t, latest))
+        passed = .false.
         do i = 1, most_tries
-            again%h = min(latest, again%h + nudge)
+            again%h = min(latest, before + nudge)
+            if (passed) again%h = 0.5_dp * (before + tried%h)
             nudge = 2.0_dp * nudge
             call self%attempt(t, again)
             if (.not. again%error < huge(again%error)) return
-            tried = again
-            if (again%error > 1.0_dp) return
+            if (again%error > 1.0_dp) then
+                tried = again
+                return
+            end if
             call switch_values(self%block%equations, t + again%h, again%y, again%last, g)
-            if (g(which) > 0.0_dp .or. again%h >= latest) return
+            if (g(which) <= 0.0_dp) before = again%h
+            if (g(which) > 0.0_dp .or. .not. passed) tried = again
+            passed = passed .or. g(which) > 0.0_dp .or. again%h >= latest
+            if (passed .and. tried%h - before <= max(close * before, told(t, latest))) return
         end do
     end subroutine pass
 

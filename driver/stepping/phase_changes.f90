@@ -13,7 +13,7 @@ module phase_changes
     implicit none
     private
 
-    public :: change_phase, first_root, follow_velocity, phase_at_rest, settle, slide_on, &
+    public :: between, change_phase, first_root, follow_velocity, phase_at_rest, settle, slide_on, &
         switch_values
 
     integer, parameter, public :: switches = 4   !! ways in which a phase can end
@@ -23,7 +23,8 @@ module phase_changes
     type, public :: root_bracket
         real(dp) :: low = 0.0_dp, high = 0.0_dp
         real(dp) :: g_low = 0.0_dp, g_high = 0.0_dp   !! values there
-        integer, private :: side = 0   !! that was moved last: -1 the lower one, 1 the upper one
+        integer, private :: side = 0   !! that was moved last, so many times on end: below 0 the
+                                       !! lower one
     contains
         procedure :: guess, take
     end type root_bracket
@@ -184,9 +185,9 @@ contains
         integer, intent(in) :: which       !! of the switch values
         real(dp) :: share
         integer, parameter :: most_tries = 20
-        real(dp), parameter :: close = 1.0e-5_dp
+        real(dp), parameter :: close = 1.0e-5_dp, small = 1.0e-3_dp
         type(root_bracket) :: bracket
-        real(dp) :: middle, g(switches), y(unknowns), dy(unknowns), change(unknowns)
+        real(dp) :: middle, g(switches), y(unknowns), dy(unknowns)
         logical :: failed
         integer :: i
 
@@ -195,12 +196,11 @@ contains
         call switch_values(block%equations, t + h, end, last, g)
         bracket%high = 1.0_dp
         bracket%g_high = g(which)
-        change = end - block%y
+        bracket%g_low = min(bracket%g_low, -small * bracket%g_high)   ! a phase may start at its end
         share = bracket%guess()
         do i = 1, most_tries
             middle = share
-            y = block%y + middle * change + middle * (middle - 1.0_dp) * ((1.0_dp - 2.0_dp &
-                * middle) * change + h * ((middle - 1.0_dp) * block%first + middle * last))
+            y = between(block, h, end, last, middle)
             call block%equations%rates(t + middle * h, y, dy, failed)
             call switch_values(block%equations, t + middle * h, y, dy, g)
             call bracket%take(middle, g(which))
@@ -209,13 +209,29 @@ contains
         end do
     end function first_root
 
-    !> Where the value of a switch is expected to be 0: false position, by the Illinois method.
+    !> The unknowns on the cubic through the ends of a step.
+    pure function between(block, h, end, last, share) result(y)
+        type(moving_block), intent(in) :: block   !! at its start
+        real(dp), intent(in) :: h                 !! its length [T]
+        real(dp), intent(in) :: end(unknowns), last(unknowns)   !! its end, and rates there
+        real(dp), intent(in) :: share             !! part of the step
+        real(dp) :: y(unknowns), change(unknowns)
+
+        change = end - block%y
+        y = block%y + share * change + share * (share - 1.0_dp) * ((1.0_dp - 2.0_dp * share) &
+            * change + h * ((share - 1.0_dp) * block%first + share * last))
+    end function between
+
+    !> Where the value of a switch is expected to be 0: false position, by the Illinois method. That
+    !> crawls along a value that is next to nothing and then rises at a kink: half-way then.
     pure function guess(self) result(x)
         class(root_bracket), intent(in) :: self
         real(dp) :: x
+        integer, parameter :: most = 3   !! moves of one side on end
 
         x = 0.5_dp * (self%low + self%high)
         if (.not. self%g_low < 0.0_dp) return   ! round-off calls the start the end of the phase
+        if (abs(self%side) >= most) return
         x = (self%low * self%g_high - self%high * self%g_low) / (self%g_high - self%g_low)
         if (.not. (x > self%low .and. x < self%high)) x = 0.5_dp * (self%low + self%high)
     end function guess
@@ -228,13 +244,13 @@ contains
         if (g > 0.0_dp) then
             self%high = x
             self%g_high = g
-            if (self%side == 1) self%g_low = 0.5_dp * self%g_low
-            self%side = 1
+            if (self%side > 0) self%g_low = 0.5_dp * self%g_low
+            self%side = max(self%side, 0) + 1
         else
             self%low = x
             self%g_low = g
-            if (self%side == -1) self%g_high = 0.5_dp * self%g_high
-            self%side = -1
+            if (self%side < 0) self%g_high = 0.5_dp * self%g_high
+            self%side = min(self%side, 0) - 1
         end if
     end subroutine take
 

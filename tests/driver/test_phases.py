@@ -2,12 +2,21 @@
 
 STICKSLIP names the program.
 """
+import itertools
 import math
 import re
 import unittest
 
 from test_program import Program
 from worst_errors import worst_of
+
+
+def cubic(step, sense, first, first_rate, last, last_rate):
+    """What goes from one value to another within a step, by its rates, at twentieths of it."""
+    for k in range(21):
+        share = k / 20
+        yield sense * (first * (1 - share)**2 * (1 + 2 * share) + last * share**2 * (3 - 2 * share)
+                       + step * share * (1 - share) * (first_rate * (1 - share) - last_rate * share))
 
 
 class Phases(Program):
@@ -32,6 +41,62 @@ class Phases(Program):
             self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])
             slip.append(rows[-1]['slip'])
         self.assertAlmostEqual(slip[0], slip[1], delta=1e-4 * slip[1])
+
+    def test_sticking_that_starts_at_a_growing_strength_ends_at_the_cap(self):
+        # the strength outgrows the traction and stops at the cap: the root was looked for at the start, and passed by
+        for mass, damping, spring, cap, speed, amplitude, frequency, rtol in (
+                (0.01, 0, 20, 0.45, 0.5, 0.4, 3, '1e-7'), (0.1, 0.02, 50, 0.55, 0.1, 0.5, 5, '1e-6'), (0.1, 0.02, 20, 0.45, 0.1, 0.3, 1, '1e-7')):
+            rows, energies = self.table(f"""&friction law='coulomb', mu=0.5, alpha_n=100, alpha_t={spring}, tau_max={cap} /
+                &slider mass={mass}, stiffness=1, damping={damping}, normal_traction=1 /
+                &drive velocity={speed}, normal_amplitude={amplitude}, normal_frequency={frequency} /
+                &time t_end=10, rtol={rtol} /""")
+            loose = [row['displacement'] - row['slip'] - row['friction_force'] / spring for row in rows]
+            self.assertLess(worst_of(abs(b - a) for a, b in itertools.pairwise(loose)), 1e-8)   # 1e-4 were lost at once
+            self.assertLess(abs(energies['unbalanced']), 1e-6)
+
+    def test_no_swing_passes_the_strength_or_turns_the_slip_within_a_step(self):
+        strength, found = 0.5, [0, 0]
+        for mass, spring, damping, v_1, v_2, turn, rtol in (
+                (1, 10, 0.05, 0.5, -0.02, 9, '1e-4'), (1, 20, 0.05, 0.3, -0.3, 7, '1e-4'), (0.3, 5, 0.05, 1, -0.05, 5, '1e-4'),
+                (0.3, 100, 0.05, 0.2, -0.5, 5, '1e-5'), (0.3, 20, 0.02, 1, -0.3, 7, '1e-5'), (0.1, 100, 0.05, 1, -0.1, 5, '1e-4'),
+                (0.03, 20, 0.02, 0.5, -0.2, 9, '1e-4')):
+            rows, _ = self.table(f"""&friction law='coulomb', mu={strength}, alpha_n=100, alpha_t={spring} /
+                &slider mass={mass}, stiffness=1, damping={damping}, normal_traction=1 /
+                &drive velocity={v_1}, {v_2}, duration={turn}, 10 /
+                &time t_end=20, rtol={rtol} /""")
+            ringing = strength / math.sqrt((1 + spring) * mass)
+            for a, b in itertools.pairwise(rows):
+                step = b['time'] - a['time']
+                sense = math.copysign(1, a['friction_force'] + b['friction_force'])
+                if b['slip'] > a['slip']:   # as it moves, within the cubic of the step
+                    if min(abs(a['friction_force']), abs(b['friction_force'])) > 0.999999 * strength:
+                        back = worst_of(cubic(step, -sense, a['velocity'], a['acceleration'], b['velocity'], b['acceleration']))
+                        self.assertLess(back, 1e-3 * ringing)
+                        found[1] += 1
+                else:
+                    highest = worst_of(cubic(step, sense, a['friction_force'], spring * a['velocity'], b['friction_force'],
+                                        spring * b['velocity']))
+                    self.assertLess(highest, strength * (1 + 1e-3))
+                    found[0] += 1
+        self.assertGreater(min(found), 100)
+
+    def test_a_block_that_just_leaves_the_base_within_a_step_does_so(self):
+        depth = 1 / 100   # at rest
+        turns = 0
+        for mass, spring, tilt, speed, amplitude, frequency in (
+                (0.2, 50, 0.5, 0.1, 0.8, 1.3), (0.1, 50, 0, 0.02, 0.7, 2), (0.5, 50, 0.5, 0.1, 0.8, 0.7), (0.3, 100, 0, 0.05, 0.8, 1)):
+            rows, _ = self.table(f"""&friction law='coulomb', mu=0.5, alpha_n=100, alpha_t={spring} /
+                &slider mass=0.1, stiffness=1, damping=0.05, normal_traction=1, normal_mass={mass}, normal_stiffness=1,
+                    tilt_stiffness={tilt} /
+                &drive velocity={speed}, normal_amplitude={amplitude}, normal_frequency={frequency} /
+                &time t_end=20, rtol=1e-4 /""")
+            for a, b in itertools.pairwise(rows):
+                if max(a['normal_displacement'], b['normal_displacement']) < -1e-9 * depth and a['normal_velocity'] > 0 > b['normal_velocity']:
+                    highest = worst_of(cubic(b['time'] - a['time'], 1, a['normal_displacement'], a['normal_velocity'],
+                                             b['normal_displacement'], b['normal_velocity']))
+                    self.assertLess(highest, 1e-4 * depth)
+                    turns += 1
+        self.assertGreater(turns, 100)
 
     def test_a_contact_that_weakens_behind_a_cap_jumps(self):
         # its fall with slip, 5219 to 5741 with the pressure, comes to exceed alpha_t
