@@ -286,6 +286,7 @@ contains
             slides = eq%phase == phase_capped .or. eq%surface%traits%onset /= onset_gradual
             if (self%implicit .or. .not. eq%mass > 0.0_dp .or. eq%rests .or. eq%follows_share() &
                 .or. .not. (slides .or. eq%across%free())) return
+            if (stays_away(self, t, tried)) return
             call switch_values(eq, t, block%y, block%first, at(:, 0))
             do i = 1, parts - 1
                 share = real(i, dp) / parts
@@ -319,6 +320,33 @@ contains
         end if
         tried = again
     end subroutine look_between
+
+    !> Is it plain that the phase cannot end between the ends of the step? Of most steps it is, and
+    !> takes a tenth of the time of a look.
+    pure logical function stays_away(self, t, tried) result(yes)
+        class(block_integrator), intent(in) :: self
+        real(dp), intent(in) :: t                   !! [T]
+        type(trial), intent(in) :: tried
+        real(dp) :: corners(4), v_drive, pressure, pressure_rate, mean
+
+        associate (block => self%block, eq => self%block%equations, h => tried%h)
+            yes = .false.
+            if (eq%across%free() .or. eq%damper > 0.0_dp .or. eq%rigid) return
+            if (eq%phase == phase_stick) then
+                if (.not. eq%steady) return
+                ! a cubic is within its corners, and strength at rest does not fall
+                corners = [block%y(elastic), block%y(elastic) + h / 3.0_dp * block%first(elastic), &
+                    tried%y(elastic) - h / 3.0_dp * tried%last(elastic), tried%y(elastic)]
+                call eq%inputs(t, block%y, v_drive, pressure, pressure_rate)
+                yes = eq%alpha * maxval(abs(corners)) < min(eq%surface%tau_max, &
+                    eq%strength(block%y, pressure))
+            else   ! the parabola of slip rates has no least value between its ends
+                mean = (tried%y(slip) - block%y(slip)) / h
+                yes = 3.0_dp * mean >= min(2.0_dp * block%first(slip) + tried%last(slip), &
+                    block%first(slip) + 2.0_dp * tried%last(slip))
+            end if
+        end associate
+    end function stays_away
 
     !> Slip rates at even parts of a step: the parabola of its ends and its mean [L/T].
     pure function slip_rates(parts, first, mean, last) result(rates)
