@@ -11,7 +11,7 @@ module fault_run
     use fault_recorder, only : recorder
     use fault_settings, only : fault_plan
     use fault_stepper, only : stepper
-    use number_text, only : rounded_text
+    use number_text, only : rounded_text, six_digits
     use platform, only : interrupted, remove_file, report, seconds
     use processes, only : team
     use progress_bar, only : progress
@@ -119,7 +119,7 @@ contains
                 records%before = step_start(time=state%time, slip=state%slip, rate=state%rate)
                 call live%steps%step(live%here, together, state, sound)
                 if (.not. sound) then
-                    problem = 'at time ' // text_of(state%time) // ': no step is short enough'
+                    problem = 'at time ' // six_digits(state%time) // ': no step is short enough'
                     exit
                 end if
                 call live%watch%see(live%here, together, records%before, state, ended)
@@ -256,8 +256,8 @@ contains
         cell = here%plan%dz()
         if (here%plan%nx > 1) cell = max(cell, here%plan%dx())
         if (here%cohesive_length < least_cells * cell) write (error_unit, '(5a, f0.1, a)') &
-            'stickslip: warning: cells of ', text_of(cell), ' do not resolve the cohesive length ' &
-            // 'of ', text_of(here%cohesive_length), ': use ', least_cells, &
+            'stickslip: warning: cells of ', six_digits(cell), ' do not resolve the cohesive ' &
+            // 'length of ', six_digits(here%cohesive_length), ': use ', least_cells, &
             ' or more cells per cohesive length'
     end subroutine warn
 
@@ -278,25 +278,16 @@ contains
         write (report, '(a, i0, a, i0, a)') 'steps          ', live%state%steps, ' (', &
             live%state%rejected, ' rejected)'
         write (report, '(a, i0)') 'events         ', live%watch%events
-        write (report, '(2a)') 'largest slip   ', text_of(most_slip)
+        write (report, '(2a)') 'largest slip   ', six_digits(most_slip)
         associate (energy => live%state%energy)
-            write (report, '(8a)') 'energy         loading ', text_of(energy%loading), &
-                ' = elastic ', text_of(energy%elastic), ' + dissipated ', &
-                text_of(energy%dissipated), ' + radiated ', text_of(energy%radiated)
+            write (report, '(8a)') 'energy         loading ', six_digits(energy%loading), &
+                ' = elastic ', six_digits(energy%elastic), ' + dissipated ', &
+                six_digits(energy%dissipated), ' + radiated ', six_digits(energy%radiated)
             write (report, '(3a)') '               error ', &
                 trim(adjustl(rounded_text(energy%unbalanced(), 8, 1))), ' of the largest term'
         end associate
-        write (report, '(2a)') 'wall clock, s  ', text_of(elapsed)
+        write (report, '(2a)') 'wall clock, s  ', six_digits(elapsed)
         write (report, '(3a)') 'results        ', live%base, '_events.csv, _global.csv and others'
     end subroutine print_summary
-
-    function text_of(number) result(text)
-        real(dp), intent(in) :: number
-        character(len=:), allocatable :: text
-        character(len=24) :: buffer
-
-        write (buffer, '(g0.6)') number
-        text = trim(adjustl(buffer))
-    end function text_of
 
 end module fault_run

@@ -6,6 +6,7 @@ module fault_start
         friction_message, friction_update, law_facts, law_state, law_subloading, load_rates, &
         read_surface, sliding_surface, statev_mu, statev_r, statev_size, statev_slip, &
         statev_status, statev_u_et, statev_u_n
+    use number_text, only : six_digits
     use processes, only : team
     implicit none
     private
@@ -92,7 +93,6 @@ contains
         integer, intent(in) :: cell            !! first one of this process; or 0
         character(len=*), intent(in) :: why    !! all processes say the same
         character(len=:), allocatable, intent(out) :: problem   !! empty if there is none
-        character(len=24) :: numbers(5)
         integer(int64) :: own, first
         real(dp) :: given(3)
         type(law_facts) :: law
@@ -108,13 +108,13 @@ contains
             given = [state%traction(cell), state%rate(cell), law%shear_cap]
         end if
         call together%largest_of_each(given)
-        write (numbers, '(g0.6)') here%plan%x_of(int(modulo(first - 1, int(here%plan%nx, int64))) &
-            + 1), here%plan%z_of(int((first - 1) / here%plan%nx) + 1), given
-        problem = 'at the start, at x = ' // trim(numbers(1)) // ', z = ' // trim(numbers(2)) &
-            // ', under a traction of ' // trim(numbers(3)) // ' and at a slip rate of ' &
-            // trim(numbers(4)) // ': '
+        problem = 'at the start, at x = ' // six_digits(here%plan%x_of(int(modulo(first - 1, &
+            int(here%plan%nx, int64))) + 1)) // ', z = ' &
+            // six_digits(here%plan%z_of(int((first - 1) / here%plan%nx) + 1)) &
+            // ', under a traction of ' // six_digits(given(1)) // ' and at a slip rate of ' &
+            // six_digits(given(2)) // ': '
         if (given(1) > given(3)) then
-            problem = problem // 'the traction must not exceed tau_max = ' // trim(numbers(5))
+            problem = problem // 'the traction must not exceed tau_max = ' // six_digits(given(3))
         else
             problem = problem // why
         end if

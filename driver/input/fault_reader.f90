@@ -15,7 +15,7 @@ module fault_reader
     use input_kind, only : refuse_other_verb
     use law_input, only : read_friction, refuse_orthotropy
     use namelist_input, only : above, any_number, at_least, between, namelist_file, rule
-    use number_text, only : full_row, rounded_text
+    use number_text, only : full_row, rounded_text, six_digits
     use profile_reader, only : joined, profile, put_number, read_map, take_profiles
     use text_file, only : gigabyte
     use unit_reader, only : read_units
@@ -149,7 +149,6 @@ contains
         integer, intent(in) :: faults_before   !! those behind are of this node
         type(profile), intent(in) :: profiles(:)
         real(dp), intent(in) :: x, z
-        character(len=80) :: text
         logical :: of_profile
         integer :: i, j
 
@@ -161,8 +160,8 @@ contains
             end do
         end do
         if (.not. of_profile) return
-        write (text, '(a, g0.6, a, g0.6)') 'the constants of friction at x = ', x, ', z = ', z
-        call file%add_fault(0, trim(text) // ' are refused')
+        call file%add_fault(0, 'the constants of friction at x = ' // six_digits(x) // ', z = ' &
+            // six_digits(z) // ' are refused')
     end subroutine tell_node
 
     !> All nodes of all profiles.

@@ -5,7 +5,7 @@ module number_text
     implicit none
     private
 
-    public :: full_row, quoted_field, rounded_text, short_text, whole_text
+    public :: full_row, quoted_field, rounded_text, short_text, six_digits, whole_text
 
 contains
 
@@ -169,6 +169,23 @@ contains
         write (form, '(2(a, i0), a)') '(es', width, '.', digits - 1, 'e3)'
         write (text, form) number
     end function rounded_text
+
+    !> A number near 1 as it is, others with an exponent. Format g0.6 would do, but compilers differ
+    !> in its exponent and its leading zero.
+    pure function six_digits(number) result(text)
+        real(dp), intent(in) :: number   !! finite
+        character(len=:), allocatable :: text
+        character(len=13) :: buffer
+        logical :: near
+
+        near = abs(number) >= 0.1_dp .and. abs(number) < 1.0e6_dp
+        if (near .or. .not. abs(number) > 0.0_dp) then
+            write (buffer, '(g13.6)') number
+        else
+            buffer = rounded_text(number, 13, 5)
+        end if
+        text = trim(adjustl(buffer))
+    end function six_digits
 
     !> A text as one field of a CSV file, whatever it contains.
     pure function quoted_field(text) result(field)
