@@ -3,6 +3,7 @@
 module trial_step
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use block_motion, only : moving_block
+    use friction_mod, only : onset_gradual
     use slider_rates, only : controlled, damped, dissipated, elastic, extension, phase_slide, &
         ratio, slip, slider_equations, unknowns, velocity
     implicit none
@@ -31,6 +32,7 @@ contains
         real(dp), intent(in) :: t                     !! of its start [T]
         real(dp), intent(in) :: weights(controlled)   !! inverse of the tolerated errors
         type(trial), intent(inout) :: tried
+        real(dp), parameter :: long = 1.0e3_dp   !! step, beside the swings of a block with a mass
         logical :: failed
 
         if (block%equations%surface%traits%memory == 1) call limit_share(block%equations, t, tried)
@@ -42,6 +44,8 @@ contains
         end associate
         if (wild(block, weights(elastic), tried)) tried%error = max(tried%error, 2.0_dp**4)
         if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
+        if (block%equations%mass > 0.0_dp .and. tried%stiffness > long) call limit_losses(block, &
+            t, tried)
         if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, &
             weights, tried)
         if (block%equations%follows_share()) call mobilise(block, tried)
@@ -139,6 +143,26 @@ contains
             wild = wild .or. far * (work + lost) < least
         end associate
     end function wild
+
+    !> In a step far longer than the block swings its slip rate is a small difference of large ones:
+    !> slip takes no more and no less than the tractions of its ends would, or else their mean.
+    pure subroutine limit_losses(block, t, tried)
+        type(moving_block), intent(in) :: block
+        real(dp), intent(in) :: t   !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp) :: tractions(2), way, work, by_damper
+
+        associate (eq => block%equations)
+            if (eq%surface%traits%onset == onset_gradual) return
+            way = tried%y(slip) - block%y(slip)
+            work = tried%y(dissipated) - block%y(dissipated)
+            by_damper = eq%damper * (tried%y(elastic) - block%y(elastic))**2 / tried%h
+            tractions = abs([eq%traction(t, block%y), eq%traction(t + tried%h, tried%y)])
+            if (work >= way * minval(tractions) .and. work <= way * maxval(tractions) + 2.0_dp &
+                * by_damper) return
+            tried%y(dissipated) = block%y(dissipated) + 0.5_dp * sum(tractions) * way + by_damper
+        end associate
+    end subroutine limit_losses
 
     !> What damper and slip take of a block without mass, whose velocity is a small difference of
     !> forces: within a long step of Rodas4 it is not well enough known to be squared, or multiplied
