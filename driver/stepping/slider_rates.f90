@@ -303,6 +303,8 @@ contains
         load%sliding = self%surface%traits%onset /= onset_gradual
         state = law_state_of(self, y, pressure)
         if (self%phase == phase_slide) then
+            if (self%surface%traits%memory == 1 .and. state%r >= 1.0_dp) state%r = beyond_full(&
+                self, y, pressure)
             call self%surface%slip_rate(state, load, contact%slip, failed)
         else if (self%phase == phase_capped) then
             contact%slip = load%loading / load%stiffness
@@ -320,6 +322,19 @@ contains
         changes = self%surface%state_rates(state, load, contact%slip)
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
+
+    !> R of a surface that slides fully: the traction's share, 1 but for the error of a step. Were
+    !> it cut at 1, rates would have a kink there, where a surface slides whose strength falls, and
+    !> derivatives on either side of it would not fit together.
+    pure function beyond_full(self, y, pressure) result(share)
+        class(slider_equations), intent(in) :: self
+        real(dp), intent(in) :: y(controlled)
+        real(dp), intent(in) :: pressure
+        real(dp) :: share
+        real(dp), parameter :: most = 1.01_dp   !! a stage of a step that is going to be refused
+
+        share = min(most, self%alpha * abs(y(elastic)) / full_strength(self, y, pressure))
+    end function beyond_full
 
     !> The same of a surface with phases of rest, most steps of which are short: without what such a
     !> block does not have.

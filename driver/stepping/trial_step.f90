@@ -35,7 +35,8 @@ contains
         real(dp), parameter :: long = 1.0e3_dp   !! step, beside the swings of a block with a mass
         logical :: failed
 
-        if (block%equations%surface%traits%memory == 1) call limit_share(block%equations, t, tried)
+        if (block%equations%surface%traits%memory == 1) call limit_share(block%equations, t, &
+            1.0_dp / weights(elastic), tried)
         call block%equations%rates(t + tried%h, tried%y, tried%last, failed)
         if (failed) tried%error = huge(tried%error)
         associate (eq => block%equations)
@@ -51,18 +52,19 @@ contains
         if (block%equations%follows_share()) call mobilise(block, tried)
     end subroutine look_at
 
-    !> What a subloading surface carries beyond its full strength is an error, which no slip would
-    !> take back: it slips by that.
-    pure subroutine limit_share(eq, t, tried)
+    !> What a subloading surface carries beyond its full strength, and the tolerated error, is one
+    !> that errors of long steps add up to: it slips by that.
+    pure subroutine limit_share(eq, t, tolerated, tried)
         type(slider_equations), intent(in) :: eq
-        real(dp), intent(in) :: t   !! of the step's start [T]
+        real(dp), intent(in) :: t           !! of the step's start [T]
+        real(dp), intent(in) :: tolerated   !! error of the elastic displacement [L]
         type(trial), intent(inout) :: tried
         real(dp) :: v_drive, pressure, pressure_rate, most
 
         if (eq%phase /= phase_slide .or. eq%damper > 0.0_dp) return
         call eq%inputs(t + tried%h, tried%y, v_drive, pressure, pressure_rate)
         most = eq%full_strength(tried%y, pressure) / eq%alpha
-        if (abs(tried%y(elastic)) <= most) return
+        if (abs(tried%y(elastic)) <= most + tolerated) return
         tried%y(slip) = tried%y(slip) + (abs(tried%y(elastic)) - most)
         tried%y(dissipated) = tried%y(dissipated) + 0.5_dp * eq%alpha * (tried%y(elastic)**2 &
             - most**2)

@@ -260,6 +260,25 @@ class Phases(Program):
             &time t_end=1000, dt=0.02 /""")
         self.assertLess(abs(energies['unbalanced']), 1e-4 * energies['dissipated'])   # 6e-3 without the drive spring
 
+    def test_a_subloading_surface_that_slides_fully_takes_few_steps_while_its_strength_falls(self):
+        # R = 1 is the end of what derivatives see: those on either side did not fit together, which took 115 000 steps, or 1300
+        for slider, most in (('mass=0, stiffness=0.81, damping=1.9e-4', 300), ('mass=0.01, stiffness=20, damping=3', 150)):
+            ends = []
+            for rtol in ('1e-4', '1e-7'):
+                rows, energies = self.table(f"""&friction law='subloading', alpha_n=13.5, alpha_t=75, mu_s=0.72, mu_k=0.247, kappa=0.906,
+                        xi=1.56e-3, m=473 /
+                    &slider {slider}, area=1.84, normal_traction=0.79 /
+                    &drive velocity=0.0118, duration=100, normal=0.516, normal_change='ramp' /
+                    &time t_end=100, rtol={rtol} /""")
+                if not ends:
+                    self.assertLess(len(rows), most)
+                for row in rows:
+                    strength = 1.84 * row['mu'] * row['normal_traction']
+                    self.assertLess(row['friction_force'], strength + 2 * float(rtol) * 1.05)
+                self.assertAlmostEqual(row['R'], 1, delta=1e-3)
+                ends.append(row['displacement'])
+            self.assertAlmostEqual(ends[0], ends[1], delta=1e-4 * ends[1])
+
     def test_a_massless_block_that_jumps_is_the_limit_of_weak_dampers_and_its_damper_takes_what_relaxes_in_any_steps(self):
         # static friction of 0.0216 falls by 0.0025 at once: of the 2.4e-6 that the drive spring gives up a step far longer than C/K had none
         text = """&friction law='slip_weakening_healing', alpha_n=1.2, alpha_t=11.8, mu_s=0.35, mu_k=0.31, d_c=2e-4, xi=0.0356 /
