@@ -93,9 +93,11 @@ contains
 
         subroutine compare(word, known, mark)
             character(len=*), intent(in) :: word, known, mark
+            integer :: letters
 
-            if (difference(word, known) >= least) return
-            least = difference(word, known)
+            letters = difference(word, known)
+            if (letters >= least) return
+            least = letters
             nearest = mark // known
         end subroutine compare
 

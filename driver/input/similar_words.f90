@@ -10,14 +10,15 @@ contains
     !> The place of the word that is most like another one; 0 where none has half of its letters.
     pure integer function most_similar(word, words) result(place)
         character(len=*), intent(in) :: word, words(:)
-        integer :: least, i
+        integer :: least, letters, i
 
         place = 0
         if (len(word) > 2 * len(words)) return   ! a long text, with which a table would be filled
         least = len(word) / 2 + 1
         do i = 1, size(words)
-            if (difference(word, trim(words(i))) >= least) cycle
-            least = difference(word, trim(words(i)))
+            letters = difference(word, trim(words(i)))
+            if (letters >= least) cycle
+            least = letters
             place = i
         end do
     end function most_similar

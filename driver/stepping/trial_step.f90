@@ -44,9 +44,11 @@ contains
                 + tried%h, tried%y) / eq%alpha
         end associate
         if (wild(block, weights(elastic), tried)) tried%error = max(tried%error, 2.0_dp**4)
-        if (.not. block%equations%mass > 0.0_dp) call damp(block, t, tried)
-        if (block%equations%mass > 0.0_dp .and. tried%stiffness > long) call limit_losses(block, &
-            t, tried)
+        if (.not. block%equations%mass > 0.0_dp) then
+            call damp(block, t, tried)
+        else if (tried%stiffness > long) then
+            call limit_losses(block, t, tried)
+        end if
         if (block%equations%follows_traction() .and. .not. failed) call balance(block, t, &
             weights, tried)
         if (block%equations%follows_share()) call mobilise(block, tried)
