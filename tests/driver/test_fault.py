@@ -78,6 +78,8 @@ class FaultTest(unittest.TestCase):
             self.skipTest('built without FFTW')
         self.place = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.place)
+        # a launcher that is killed leaves its files, megabytes of them
+        self.environment = dict(ENVIRONMENT, TMPDIR=str(self.place))
         (self.place / 'a.csv').write_text(A)
         (self.place / 'start.csv').write_text(START)
 
@@ -90,7 +92,7 @@ class FaultTest(unittest.TestCase):
         return launcher + [PROGRAM, 'fault', '--no-plot', *arguments]
 
     def run_fault(self, *arguments, processes=1, expect=0):
-        done = subprocess.run(self.command(processes, *arguments), cwd=self.place, env=ENVIRONMENT,
+        done = subprocess.run(self.command(processes, *arguments), cwd=self.place, env=self.environment,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
@@ -110,7 +112,7 @@ class FaultTest(unittest.TestCase):
         """Kills a run some time after its first checkpoint, that of its start, or a later one."""
         shutil.rmtree(self.place / 'parts', ignore_errors=True)
         run = subprocess.Popen(self.command(processes, name, '--output', 'parts', '--quiet'), cwd=self.place,
-                               env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                               env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         seen = set()
         while len(seen) < checkpoints and run.poll() is None:
             with contextlib.suppress(FileNotFoundError):
@@ -217,12 +219,12 @@ class Processes(FaultTest):
             library = self.place / f'{function}.so'
             subprocess.run(['cc', '-shared', '-fPIC', 'raise.c', '-o', library, '-ldl'], cwd=self.place, check=True)
             done = subprocess.run([MPIRUN, '-n', '2', 'env', f'LD_PRELOAD={library}', PROGRAM, 'fault', 'case.nml', '--no-plot'],
-                                  cwd=self.place, env=ENVIRONMENT, capture_output=True, text=True)
+                                  cwd=self.place, env=self.environment, capture_output=True, text=True)
             self.assertEqual(done.returncode != 0, ends, function + done.stdout + done.stderr)
 
     def launch(self, command, status):
         """What three processes say."""
-        done = subprocess.run([MPIRUN, '-n', '3', *command], cwd=self.place, env=ENVIRONMENT, capture_output=True, text=True)
+        done = subprocess.run([MPIRUN, '-n', '3', *command], cwd=self.place, env=self.environment, capture_output=True, text=True)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout + done.stderr
 
