@@ -9,7 +9,7 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     msname, npt, node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, &
     chrlngth, props, nprops)
     use friction_host, only : cut_factor, elastic_energy, error_text, forget_elastic, &
-        host_tangential, rotate_tangential, stdb_abqerr, usable
+        hold_without_pressure, host_tangential, rotate_tangential, stdb_abqerr, usable
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
         statev_size, statev_u_et
@@ -51,6 +51,7 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
             end if
             start = state
             call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
+            if (status >= 0) call hold_without_pressure(dgam, press, props, state, ddtddg)
         end if
     end if
     if (status < 0 .and. status /= friction_no_convergence) then

@@ -10,8 +10,8 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
     ndir, nstatv, npred, nprops, mcrd, kstep, kinc, kit, linper, lopenclose, lstate, lsdi, &
     lprint)
     use friction_contact, only : point_open
-    use friction_host, only : cut_factor, elastic_energy, error_text, host_update, &
-        interface_update, rotate_tangential, stdb_abqerr
+    use friction_host, only : cut_factor, elastic_energy, error_text, hold_touching, &
+        host_update, interface_update, rotate_tangential, stdb_abqerr, usable
     use friction_kinds, only : wp
     use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
         statev_size, statev_status, statev_u_et, statev_u_n
@@ -52,6 +52,7 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
         dissipated = state(statev_dissipation)
         if (ndir == 3) call rotate_tangential(drot, state)
         call interface_update(ndir, rdisp, drdisp, dtime, props, state, stress, ddsddr, status)
+        if (status >= 0) call hold_touching(ndir, drdisp, gap_of_none(), props, state, ddsddr)
     end if
     if (status < 0 .and. status /= friction_no_convergence) then
         call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
@@ -75,6 +76,16 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
 
 contains
 
+    !> The gap that round-off of coordinates, up to some 1e6 elements from their origin, leaves
+    !> between surfaces that share them.
+    pure function gap_of_none() result(gap)
+        real(wp) :: gap
+        real(wp), parameter :: share = 1.0e-9_wp   ! of an element's length
+
+        gap = 0.0_wp
+        if (usable(chrlngth)) gap = share * max(chrlngth, 0.0_wp)
+    end function gap_of_none
+
     !> A linear perturbation step asks for the stiffness of the base state: about it the contact
     !> moves without time, nothing of it changes, and no friction follows the pressure.
     subroutine base_stiffness()
@@ -85,6 +96,9 @@ contains
         if (nstatv >= statev_size) then
             base = statev(1:statev_size)
             call host_update(ndir, still, 0.0_wp, nprops, props, base, traction, tangent, status)
+            ! a virgin point's gap is not known
+            if (status >= 0 .and. nint(statev(statev_status)) == point_open) &
+                call hold_touching(ndir, still, gap_of_none(), props, base, tangent)
         end if
         if (status < 0) then
             call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])

@@ -60,7 +60,7 @@ contains
         call host_update(3, du, dtime, nprops - first_friction_prop + 1, &
             props(first_friction_prop), statev, traction, tangent, status)
         if (status < 0) return
-        call hold_touching(3, du, props(first_friction_prop), statev, tangent)
+        call hold_touching(3, du, 0.0_wp, props(first_friction_prop), statev, tangent)
         tangent(2:3, 1) = 0.0_wp
         tangent = layer%thickness * tangent
         call put_stress(new, layer%modulus, stran + dstran, traction, stress)

@@ -11,8 +11,8 @@ module friction_host
     private
 
     public :: append, append_number, cut_factor, elastic_energy, error_text, forget_elastic, &
-        hold_touching, host_tangential, host_update, interface_update, rotate_tangential, usable, &
-        used_length
+        hold_touching, hold_without_pressure, host_tangential, host_update, interface_update, &
+        rotate_tangential, usable, used_length
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
@@ -84,7 +84,6 @@ contains
         real(wp), intent(inout), contiguous :: by_du(:, :)   !! [F/L^3]
         real(wp), intent(inout), contiguous :: by_p(:)       !! [-]
         integer, intent(out) :: status
-        integer :: i
 
         call friction_tangential(du, pressure, dtime, props, statev, tau, by_du, by_p, status)
         if (status /= friction_zero_time_increment) return   ! what is no number is not compared
@@ -93,25 +92,48 @@ contains
         if (status < 0) return
         status = friction_ok   ! as above
         by_p = 0.0_wp
-        by_du = 0.0_wp
-        do i = 1, size(du)
-            by_du(i, i) = props(prop_alpha_t)
-        end do
+        call put_shear_springs(props, by_du)
     end subroutine host_tangential
 
-    !> Elements join two bodies from the start, and may be all that holds one of them. Where they
-    !> just touch, and nothing moves yet, their stiffness is that of the springs: with that of a
-    !> gap, which is none, a host could not press them by a force.
-    pure subroutine hold_touching(ndir, du, props, statev, tangent)
+    !> What `hold_touching` does, where the host has a normal contact of its own: closed, with no
+    !> pressure yet.
+    pure subroutine hold_without_pressure(du, pressure, props, statev, by_du)
+        real(wp), intent(in), contiguous :: du(:)   !! as in `host_tangential`, after which it is
+                                                    !! called, and so on
+        real(wp), intent(in) :: pressure
+        real(wp), intent(in), contiguous :: props(:)
+        real(wp), intent(in) :: statev(statev_size)          !! at the end of the increment
+        real(wp), intent(inout), contiguous :: by_du(:, :)
+
+        if (nint(statev(statev_status)) == point_open .and. all(abs(du) <= 0.0_wp) &
+            .and. abs(pressure) <= 0.0_wp) call put_shear_springs(props, by_du)
+    end subroutine hold_without_pressure
+
+    pure subroutine put_shear_springs(props, by_du)
+        real(wp), intent(in), contiguous :: props(:)         !! constants of the friction routine
+        real(wp), intent(inout), contiguous :: by_du(:, :)   !! out [F/L^3]
+        integer :: i
+
+        by_du = 0.0_wp
+        do i = 1, size(by_du, 1)
+            by_du(i, i) = props(prop_alpha_t)
+        end do
+    end subroutine put_shear_springs
+
+    !> The contact may be all that holds a body. Where two just touch, and nothing moves yet, the
+    !> stiffness is that of the springs: with that of a gap, which is none, a host could not press
+    !> them by a force.
+    pure subroutine hold_touching(ndir, du, reach, props, statev, tangent)
         integer, intent(in) :: ndir                       !! as in `host_update`, after which it is
                                                           !! called, and so on
         real(wp), intent(in) :: du(ndir)
+        real(wp), intent(in) :: reach      !! the widest gap that is none, or 0 [L]
         real(wp), intent(in) :: props(prop_alpha_t)
         real(wp), intent(in) :: statev(statev_size)       !! at the end of the increment
         real(wp), intent(inout) :: tangent(ndir, ndir)
 
         if (nint(statev(statev_status)) == point_open .and. all(abs(du) <= 0.0_wp) &
-            .and. abs(statev(statev_u_n)) <= 0.0_wp) call put_springs(ndir, props, tangent)
+            .and. statev(statev_u_n) <= reach) call put_springs(ndir, props, tangent)
     end subroutine hold_touching
 
     pure subroutine put_springs(ndir, props, tangent)

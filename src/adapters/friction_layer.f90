@@ -91,7 +91,7 @@ contains
         call host_update(at%n, du, dtime, nprops - first_friction_prop + 1, &
             props(first_friction_prop), statev, traction, tangent, status)
         if (status < 0) return
-        call hold_touching(at%n, du, props(first_friction_prop), statev, tangent)
+        call hold_touching(at%n, du, 0.0_wp, props(first_friction_prop), statev, tangent)
         call extend_in_plane(at, ndi + nshr, layer%modulus, dstran, stress, ddsdde, sse)
         do j = 1, at%n
             stress(at%place(j)) = traction(j)
