@@ -242,6 +242,8 @@ class Mgis(unittest.TestCase):
             result = found.integrate([0.0] * found.size, moved, constants, [0.0] * 8, dt)
             self.assertEqual((result.code, result.rdt), (-1, 0.1))
             self.assertIn(f'stickslip, code {code}: ', result.message)
+            if code == '-3':
+                self.assertRegex(result.message, ': (mu_s must be >= mu_k|Thickness must be > 0, .*)$')
             self.assertEqual(result.forces, [0.0] * found.size)
         for strain, modulus in ((float('nan'), 1.0), (1e160, 1.0), (1e160, 0.0), (1e90, 1e90)):
             constants = properties('Subloading', layer=True, InPlaneModulus=modulus)

@@ -9,10 +9,11 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
     msname, npt, node, npatch, coords, rcoord, drot, temp, predef, nfdir, mcrd, npred, nstatv, &
     chrlngth, props, nprops)
     use friction_host, only : cut_factor, elastic_energy, error_text, forget_elastic, &
-        hold_without_pressure, host_tangential, rotate_tangential, stdb_abqerr, usable
+        hold_without_pressure, host_tangential, rotate_tangential, severity, &
+        stdb_abqerr, usable
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
-        statev_size, statev_u_et
+    use friction_mod, only : friction_bad_size, friction_ok, statev_dissipation, statev_size, &
+        statev_u_et
     implicit none
     integer, intent(inout) :: lm              !! in: 2 was open; out: 0 relative motion
     integer, intent(in) :: nfdir              !! tangential directions, 1 or 2
@@ -43,23 +44,25 @@ subroutine stickslip_fric(lm, tau, ddtddg, ddtddp, dslip, sed, sfd, ddtddt, pnew
         if (lm == was_open) then
             call forget_elastic(props, state, status)
         else
-            if (nfdir == 2) call rotate_tangential(drot, state)
+            status = friction_ok
+            if (nfdir == 2) call rotate_tangential(drot, state, status)
             ! a displacement without its stress: open since, although LM does not say so
             if (all(usable(tau)) .and. all(usable(state))) then
                 if (all(abs(tau) <= 0.0_wp) .and. any(abs(state(statev_u_et:statev_u_et + 1)) &
                     > 0.0_wp)) call forget_elastic(props, state, status)
             end if
             start = state
-            call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, ddtddp, status)
+            if (status >= 0) call host_tangential(dgam, press, dtime, props, state, tau, ddtddg, &
+                ddtddp, status)
             if (status >= 0) call hold_without_pressure(dgam, press, props, state, ddtddg)
         end if
     end if
-    if (status < 0 .and. status /= friction_no_convergence) then
-        call stdb_abqerr(-3, error_text('FRIC', status), [noel, npt], time, [ciname(1:8)])
+    if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
+    if (status < 0) then
+        call stdb_abqerr(severity(status), error_text('FRIC', status, props), [noel, npt], time, &
+            [ciname(1:8)])
         return
     end if
-    if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
-    if (status < 0) return
 
     statev(1:statev_size) = state
     if (lm == was_open) return

@@ -11,10 +11,10 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
     lprint)
     use friction_contact, only : point_open
     use friction_host, only : cut_factor, elastic_energy, error_text, hold_touching, &
-        host_update, interface_update, rotate_tangential, stdb_abqerr, usable
+        host_update, interface_update, rotate_tangential, severity, stdb_abqerr, usable
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_dissipation, &
-        statev_size, statev_status, statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_size, friction_ok, statev_dissipation, statev_size, &
+        statev_status, statev_u_et, statev_u_n
     implicit none
     integer, intent(in) :: ndir                   !! components, 2 or 3
     integer, intent(in) :: nstatv, npred, nprops, mcrd
@@ -50,16 +50,18 @@ subroutine stickslip_uinter(stress, ddsddr, amki, amski, flux, ddfddt, ddsddt, d
     if (nstatv >= statev_size) then
         state = statev(1:statev_size)
         dissipated = state(statev_dissipation)
-        if (ndir == 3) call rotate_tangential(drot, state)
-        call interface_update(ndir, rdisp, drdisp, dtime, props, state, stress, ddsddr, status)
+        status = friction_ok
+        if (ndir == 3) call rotate_tangential(drot, state, status)
+        if (status >= 0) call interface_update(ndir, rdisp, drdisp, dtime, props, state, stress, &
+            ddsddr, status)
         if (status >= 0) call hold_touching(ndir, drdisp, gap_of_none(), props, state, ddsddr)
     end if
-    if (status < 0 .and. status /= friction_no_convergence) then
-        call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
+    if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
+    if (status < 0) then
+        call stdb_abqerr(severity(status), error_text('UINTER', status, props), [node], time, &
+            [ciname(1:8)])
         return
     end if
-    if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
-    if (status < 0) return
 
     second = 0.0_wp
     if (ndir == 3) second = state(statev_u_et + 1)
@@ -101,7 +103,7 @@ contains
                 call hold_touching(ndir, still, gap_of_none(), props, base, tangent)
         end if
         if (status < 0) then
-            call stdb_abqerr(-3, error_text('UINTER', status), [node], time, [ciname(1:8)])
+            call stdb_abqerr(-3, error_text('UINTER', status, props), [node], time, [ciname(1:8)])
             return
         end if
         ddsddr(1:ndir, 1:ndir) = reshape(tangent(1:ndir**2), [ndir, ndir])

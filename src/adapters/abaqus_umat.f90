@@ -15,11 +15,11 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
     drpldt, stran, dstran, time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, &
     nstatv, props, nprops, coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, &
     jstep, kinc)
-    use friction_host, only : cut_factor, error_length, error_text, rotate_tangential, &
+    use friction_host, only : cut_factor, error_length, rotate_tangential, severity, &
         stdb_abqerr, usable
     use friction_kinds, only : wp
-    use friction_layer, only : layer_update, perturb_layer
-    use friction_mod, only : friction_bad_size, friction_no_convergence, statev_size
+    use friction_layer, only : layer_error_text, layer_update, perturb_layer
+    use friction_mod, only : friction_bad_size, friction_ok, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! direct, shear and all components
     integer, intent(in) :: nstatv, nprops, noel, npt, layer, kspt, jstep(4), kinc
@@ -41,7 +41,7 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
 
     if (ndi == 3 .and. jstep(3) == large_displacements) then
         if (tilt() > largest_tilt) then
-            call refuse('stickslip, UMAT: under NLGEOM a layer of solid elements has turned out ' &
+            call tell(-3, 'stickslip, UMAT: under NLGEOM a layer of solid elements has turned out ' &
                 // 'of its plane, and its normal is no longer the local axis; use cohesive ' &
                 // 'elements or UINTER')
             return
@@ -55,27 +55,33 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
                 status)
             if (status >= 0) stress = stress + change(:ntens)
         else
-            if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state)
-            call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, stress, ddsdde, sse, &
-                spd, status)
+            status = friction_ok
+            if (ntens == 6) call rotate_tangential(spin_in_plane(drot), state, status)
+            if (status >= 0) call layer_update(ndi, nshr, nprops, props, dstran, dtime, state, &
+                stress, ddsdde, sse, spd, status)
         end if
     end if
-    if (status < 0 .and. status /= friction_no_convergence) then
-        call refuse(error_text('UMAT', status))
-        return
-    end if
     if (cut_factor(status) < 1.0_wp) pnewdt = min(pnewdt, cut_factor(status))
-    if (status >= 0) statev(1:statev_size) = state
+    if (status < 0) then
+        ! in a perturbation there is no step to cut
+        call tell(merge(-3, severity(status), jstep(4) == perturbation), &
+            layer_error_text(status, props))
+    else
+        statev(1:statev_size) = state
+    end if
 
 contains
 
-    !> How far the fibres of the layer's plane have turned towards its normal.
+    !> How far the fibres of the layer's plane have turned towards its normal. What is no number is
+    !> for the update to tell.
     pure function tilt()
         real(wp) :: tilt
         integer :: normal
 
         normal = nshr / 2 + 2   ! 3 in space, 2 in plane strain
-        tilt = maxval(abs(dfgrd1(normal, 1:normal - 1)))
+        tilt = 0.0_wp
+        if (all(usable(dfgrd1(normal, 1:normal - 1)))) &
+            tilt = maxval(abs(dfgrd1(normal, 1:normal - 1)))
     end function tilt
 
     !> The part of a rotation that is about the layer's normal. The rest comes of the shear, in
@@ -100,12 +106,13 @@ contains
         spin(2, 2) = spin(1, 1)
     end function spin_in_plane
 
-    subroutine refuse(cause)
+    subroutine tell(lop, cause)
+        integer, intent(in) :: lop   !! kind of the message
         character(len=*), intent(in) :: cause
         character(len=error_length) :: text
 
         text = cause
-        call stdb_abqerr(-3, text, [noel, npt], time, [cmname(1:8)])
-    end subroutine refuse
+        call stdb_abqerr(lop, text, [noel, npt], time, [cmname(1:8)])
+    end subroutine tell
 
 end subroutine stickslip_umat

@@ -98,7 +98,7 @@ contains
     subroutine refuse(place)
         integer, intent(in) :: place   !! in the surface; 0 for all
 
-        call xplb_abqerr(-3, error_text('VFRIC', status), [place], [timglb], [surfint(1:8)])
+        call xplb_abqerr(-3, error_text('VFRIC', status, props), [place], [timglb], [surfint(1:8)])
     end subroutine refuse
 
 end subroutine stickslip_vfric

@@ -50,7 +50,7 @@ subroutine stickslip_vfriction(ftangential, state, nblock, nblockanal, nblockedg
     end if
     status = friction_bad_size
     if (nstates < statev_size .or. nfricdir /= ndir - 1) then
-        call refuse(error_text('VFRICTION', status), 1)
+        call refuse(error_text('VFRICTION', status, props), 1)
         return
     end if
     point = explicit_point(ndir, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
@@ -64,7 +64,7 @@ subroutine stickslip_vfriction(ftangential, state, nblock, nblockanal, nblockedg
         point%area = areacont(c)
         call slide_in_contact(point, props, state(1:statev_size, 1, c), force, status)
         if (status < 0) then
-            call refuse(error_text('VFRICTION', status), c)
+            call refuse(error_text('VFRICTION', status, props), c)
             return
         end if
         ftangential(:, c) = force(1:nfricdir)

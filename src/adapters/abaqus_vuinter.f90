@@ -11,8 +11,8 @@ subroutine stickslip_vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, 
     use friction_host, only : elastic_energy, error_text, interface_update, rotate_tangential, &
         xplb_abqerr
     use friction_kinds, only : wp
-    use friction_mod, only : friction_bad_size, friction_zero_time_increment, statev_dissipation, &
-        statev_size, statev_u_et, statev_u_n
+    use friction_mod, only : friction_bad_size, friction_ok, friction_zero_time_increment, &
+        statev_dissipation, statev_size, statev_u_et, statev_u_n
     implicit none
     integer, intent(in) :: nslvnod                         !! points
     integer, intent(in) :: ndir                            !! components, 2 or 3
@@ -43,15 +43,16 @@ subroutine stickslip_vuinter(sfd, scd, spd, svd, stress, fluxslv, fluxmst, sed, 
         if (nstatevar >= statev_size) then
             state = statev(1:statev_size, i)
             dissipated = state(statev_dissipation)
-            if (ndir == 3) call rotate_tangential(drot(:, :, i), state)
-            call interface_update(ndir, rdisp(:, i), drdisp(:, i), dtimcur, props, state, &
-                stress(:, i), stiffness, status)
+            status = friction_ok
+            if (ndir == 3) call rotate_tangential(drot(:, :, i), state, status)
+            if (status >= 0) call interface_update(ndir, rdisp(:, i), drdisp(:, i), dtimcur, &
+                props, state, stress(:, i), stiffness, status)
             ! where no time has passed nothing has slid, whatever the host moved into place
             if (status == friction_zero_time_increment) call interface_update(ndir, &
                 rdisp(:, i), no_motion, dtimcur, props, state, stress(:, i), stiffness, status)
         end if
         if (status < 0) then
-            call xplb_abqerr(-3, error_text('VUINTER', status), jslvuid(i:i), [timglb], &
+            call xplb_abqerr(-3, error_text('VUINTER', status, props), jslvuid(i:i), [timglb], &
                 [surfint(1:8)])
             return
         end if

@@ -15,15 +15,13 @@
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use friction_host, only : append, append_number, cut_factor, error_length, error_text, &
-        used_length
+    use friction_host, only : append, append_number, cut_factor, error_length, used_length
     use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
     use friction_finite_layer, only : finite_layer_update
-    use friction_layer, only : first_friction_prop, layer_shear_stiffness, &
-        layer_update, perturb_layer
-    use friction_mod, only : friction_bad_size, friction_is_orthotropic, friction_no_convergence, &
-        statev_size
+    use friction_layer, only : first_friction_prop, layer_error_text, &
+        layer_shear_stiffness, layer_update, perturb_layer
+    use friction_mod, only : friction_bad_size, friction_is_orthotropic, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! 3, 3, 6: 11, 22, 33, 12, 13, 23
     integer, intent(in) :: nstatv, nprops, noel, npt, kinc
@@ -53,9 +51,9 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     ! the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
     ! a perturbation step is about, and then for the stress of each mode, with that mode's strain.
     status = friction_bad_size
+    perturbed = jstep(4) == perturbation
     if (nstatv >= statev_size .and. ntens == 6) then
         state = statev(1:statev_size)
-        perturbed = jstep(4) == perturbation
         start = stran
         increment = dstran
         dt = dtime
@@ -78,8 +76,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         end if
         if (.not. perturbed) statev(1:statev_size) = state
     end if
-    if (status < 0 .and. status /= friction_no_convergence) then
-        call stop_with_cause(error_text('UMAT', status))
+    if (status < 0 .and. (perturbed .or. .not. cut_factor(status) < 1.0_wp)) then
+        call stop_with_cause(layer_error_text(status, props))
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
     if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)

@@ -3,16 +3,18 @@ module friction_host
     use, intrinsic :: iso_fortran_env, only : int64
     use friction_contact, only : point_open
     use friction_kinds, only : wp
-    use friction_mod, only : array_sizes, friction_bad_increment, friction_message, &
+    use friction_mod, only : array_sizes, broken_rule, constant_table, friction_bad_increment, &
+        friction_bad_law, friction_bad_property, friction_bad_size, friction_check, &
+        friction_constants, friction_default, friction_law_of, friction_message, &
         friction_no_convergence, friction_ok, friction_snap_back, friction_tangential, &
         friction_zero_time_increment, prop_alpha_n, prop_alpha_t, statev_size, statev_status, &
-        statev_u_et, statev_u_n, update_arrays
+        statev_u_et, statev_u_n, text_length, update_arrays
     implicit none
     private
 
     public :: append, append_number, cut_factor, elastic_energy, error_text, forget_elastic, &
         hold_touching, hold_without_pressure, host_tangential, host_update, interface_update, &
-        rotate_tangential, usable, used_length
+        rotate_tangential, severity, usable, used_length
 
     integer, parameter, public :: error_length = 500   !! what Abaqus wants
 
@@ -150,18 +152,19 @@ contains
     end subroutine put_springs
 
     !> Turns the elastic tangential displacement with the host's surface axes: u <- DROT u. What is
-    !> no number makes a state that the update refuses.
-    pure subroutine rotate_tangential(drot, statev)
+    !> no number in the state stays, for the update to refuse.
+    pure subroutine rotate_tangential(drot, statev, status)
         real(wp), intent(in) :: drot(2, 2)       !! rotation of the axes in this increment [-]
         real(wp), intent(inout) :: statev(statev_size)   !! state at the start of the increment
+        integer, intent(out) :: status                   !! ok, or bad increment
         real(wp) :: u(2)
 
+        status = friction_bad_increment
+        if (.not. all(usable(drot))) return
+        status = friction_ok
         u(1) = statev(statev_u_et)
         u(2) = statev(statev_u_et + 1)
-        if (.not. (all(usable(drot)) .and. all(usable(u)))) then
-            statev(statev_u_et) = huge(u)
-            return
-        end if
+        if (.not. all(usable(u))) return
         statev(statev_u_et) = drot(1, 1) * u(1) + drot(1, 2) * u(2)
         statev(statev_u_et + 1) = drot(2, 1) * u(1) + drot(2, 2) * u(2)
     end subroutine rotate_tangential
@@ -266,20 +269,33 @@ contains
             + props(prop_alpha_t) * (u_et1**2 + u_et2**2))
     end function elastic_energy
 
-    !> The factor on the time increment that a status asks for: below 1 where the host should cut.
+    !> The factor on the time increment that a status asks for: below 1 where the host should cut. An
+    !> increment out of range is what iterations that diverged leave.
     pure function cut_factor(status) result(factor)
         integer, intent(in) :: status   !! of the friction routine
         real(wp) :: factor
 
         factor = 1.0_wp
         if (status == friction_snap_back) factor = 0.5_wp
-        if (status == friction_no_convergence) factor = 0.25_wp
+        if (status == friction_no_convergence .or. status == friction_bad_increment) &
+            factor = 0.25_wp
     end function cut_factor
 
-    !> What to tell the user of a host about an error.
-    pure function error_text(adapter, status) result(text)
+    !> The kind of Abaqus's message for an error: a warning where a shorter step may help, else -3,
+    !> which ends the job.
+    pure function severity(status)
+        integer, intent(in) :: status   !! of the friction routine, below 0
+        integer :: severity
+
+        severity = merge(-1, -3, cut_factor(status) < 1.0_wp)
+    end function severity
+
+    !> What to tell the user of a host about an error. Of constants all that break a rule, as far as
+    !> there is room.
+    pure function error_text(adapter, status, props) result(text)
         character(len=*), intent(in) :: adapter    !! name of the adapter
         integer, intent(in) :: status              !! of the friction routine
+        real(wp), intent(in), contiguous :: props(:)   !! constants of the friction routine
         character(len=error_length) :: text
         integer :: length
 
@@ -290,7 +306,40 @@ contains
         call append_number(text, length, status)
         call append(text, length, ': ')
         call append(text, length, friction_message(status))
+        if (any(status == [friction_bad_size, friction_bad_law, friction_bad_property])) &
+            call append_faults(text, length, props)
     end function error_text
+
+    pure subroutine append_faults(text, length, props)
+        character(len=error_length), intent(inout) :: text
+        integer, intent(inout) :: length
+        real(wp), intent(in), contiguous :: props(:)
+        integer, parameter :: room = error_length - 100   ! the rest is the host's
+        type(constant_table) :: table
+        character(len=text_length) :: cause
+        real(wp) :: full(size(table%of))
+        integer :: place, i, status
+
+        call friction_check(props, place, cause, status)
+        if (status >= 0) return
+        call append(text, length, ': ')
+        call append(text, length, cause(:used_length(cause)))
+        if (status /= friction_bad_property .or. .not. all(usable(props))) return
+        table = friction_constants(friction_law_of(props))
+        full = 0.0_wp
+        do i = 1, table%n
+            if (i <= size(props)) full(i) = props(i)
+            if (i > size(props)) full(i) = friction_default(full(:i), i)
+        end do
+        do i = place + 1, min(table%n, size(props))
+            cause = broken_rule(table, i, full)
+            if (used_length(cause) == 0 .or. place == 0 .or. length > room - text_length) cycle
+            call append(text, length, ', ')
+            call append(text, length, table%of(i)%name(:used_length(table%of(i)%name)))
+            call append(text, length, ' ')
+            call append(text, length, cause(:used_length(cause)))
+        end do
+    end subroutine append_faults
 
     !> Writes behind the first `length` characters and blanks all that follows. Fortran's own ways
     !> to put texts together need a run-time library that a host may not have.

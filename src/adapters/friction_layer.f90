@@ -2,7 +2,8 @@
 !> UMATs of Abaqus and CalculiX share. Nothing here is allocated: components are gathered one by
 !> one.
 module friction_layer
-    use friction_host, only : elastic_energy, hold_touching, host_update, usable
+    use friction_host, only : append, elastic_energy, error_length, error_text, hold_touching, &
+        host_update, usable, used_length
     use friction_kinds, only : wp
     use friction_law_constants, only : positive
     use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_size, &
@@ -10,7 +11,8 @@ module friction_layer
     implicit none
     private
 
-    public :: layer_constants, layer_shear_stiffness, layer_update, perturb_layer, read_layer
+    public :: layer_constants, layer_error_text, layer_shear_stiffness, layer_update, &
+        perturb_layer, read_layer
 
     !> Places of the layer's own constants; those of the friction routine follow.
     integer, parameter :: prop_thickness = 1, prop_modulus = 2
@@ -48,6 +50,21 @@ contains
         if (layer%modulus > 0.0_wp .and. layer%modulus < positive) return
         status = friction_ok
     end subroutine read_layer
+
+    !> As `error_text`, also of the layer's own constants.
+    pure function layer_error_text(status, props) result(text)
+        integer, intent(in) :: status                  !! of an update
+        real(wp), intent(in), contiguous :: props(:)   !! thickness, modulus, friction constants
+        character(len=error_length) :: text
+        type(layer_constants) :: layer
+        integer :: length, found
+
+        text = error_text('UMAT', status, props(min(first_friction_prop, size(props) + 1):))
+        call read_layer(size(props), props, layer, found)
+        if (status /= friction_bad_property .or. found /= friction_bad_property) return
+        length = used_length(text)
+        call append(text, length, ', the thickness of the layer must be > 0 and its modulus >= 0')
+    end function layer_error_text
 
     !> Elastic shear stiffness, of constants that an update has taken.
     pure function layer_shear_stiffness(props) result(stiffness)

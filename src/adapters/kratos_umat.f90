@@ -39,7 +39,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         call host_update(3, du, dtime, nprops, props, statev, traction, tangent, status)
     end if
     ! this host has no way to cut the step or to be told of an error
-    if (status < 0) call end_host(error_text('Kratos UMAT', status), to_errors, 1)
+    if (status < 0) call end_host(error_text('Kratos UMAT', status, props), to_errors, 1)
     call hold_touching(3, du, 0.0_wp, props, statev, tangent)
     stress = 0.0_wp
     ddsdde = 0.0_wp

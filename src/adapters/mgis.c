@@ -53,10 +53,11 @@ static const geometry zone_in_space = {3, 3, {0, 1, 2}, 0};
 static const geometry layer_in_plane = {2, 4, {1, 3, 0}, 1};      /* normal to y (z of axial symmetry) */
 static const geometry layer_in_space = {3, 6, {2, 4, 5}, 1};      /* normal to z */
 
-static int fail(const behaviour_data *data, int status)
+static int fail(const behaviour_data *data, int status, const char *cause)
 {
     if (data->error_message)
-        snprintf(data->error_message, message_size, "stickslip, code %d: %s", status, friction_message(status));
+        snprintf(data->error_message, message_size, "stickslip, code %d: %s%s%s", status, friction_message(status),
+                 *cause ? ": " : "", cause);
     if (data->rdt && *data->rdt > 0.1)
         *data->rdt = 0.1;
     return failed;
@@ -208,11 +209,11 @@ static int integrate(behaviour_data *data, int law, int own, const geometry *for
         properties += 2;
         if (!(isgreaterequal(thickness, least) && isless(thickness, largest)
               && (modulus == 0 || isgreaterequal(modulus, least)) && isless(modulus, largest)))
-            return fail(data, FRICTION_BAD_PROPERTY);
+            return fail(data, FRICTION_BAD_PROPERTY, "Thickness must be > 0, InPlaneModulus >= 0");
     }
     for (i = 0; asked.integrate && i < form->size; i++)
         if (!(is_usable(data->s1.gradients[i]) && is_usable(modulus * data->s1.gradients[i])))
-            return fail(data, FRICTION_BAD_INCREMENT);
+            return fail(data, FRICTION_BAD_INCREMENT, "");
     props[0] = law;
     memcpy(props + 1, properties, (size_t)(own + 2) * sizeof *props);
     memcpy(statev, data->s0.internal_state_variables, sizeof statev);
@@ -220,12 +221,16 @@ static int integrate(behaviour_data *data, int law, int own, const geometry *for
         const double *start = &data->s0.gradients[form->place[i]], *end = &data->s1.gradients[form->place[i]];
 
         if (asked.integrate && !is_usable(*start))
-            return fail(data, FRICTION_BAD_INCREMENT);
+            return fail(data, FRICTION_BAD_INCREMENT, "");
         du[i] = asked.integrate ? thickness * factor(form, i) * (*end - *start) : 0;
     }
     status = update(du, asked.integrate ? data->dt : 0, form, own + 3, props, statev, traction, tangent);
-    if (status < 0)
-        return fail(data, status);
+    if (status < 0) {
+        char cause[97] = "";   /* which constant breaks which rule */
+
+        friction_check(own + 3, props, sizeof cause, cause);
+        return fail(data, status, cause);
+    }
     if (asked.elastic || just_touches(form, du, statev))
         elastic_tangent(form, props, tangent);
     if (asked.operator_wanted)

@@ -3,14 +3,15 @@ module abaqus_host
     implicit none
     private
 
-    integer, public :: errors_heard = 0                !! calls of the error utilities
+    integer, public :: errors_heard = 0                !! messages that end the job
+    integer, public :: warnings_heard = 0
     character(len=500), public :: last_error = ''
 
 end module abaqus_host
 
 subroutine stdb_abqerr(lop, text, intv, realv, charv)
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use abaqus_host, only : errors_heard, last_error
+    use abaqus_host, only : errors_heard, last_error, warnings_heard
     implicit none
     integer, intent(in) :: lop, intv(*)
     character(len=500), intent(in) :: text
@@ -18,6 +19,7 @@ subroutine stdb_abqerr(lop, text, intv, realv, charv)
     character(len=8), intent(in) :: charv(*)
 
     if (lop == -3) errors_heard = errors_heard + 1
+    if (lop == -1) warnings_heard = warnings_heard + 1
     last_error = text
 end subroutine stdb_abqerr
 
