@@ -19,9 +19,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
     use friction_finite_layer, only : finite_layer_update
-    use friction_layer, only : first_friction_prop, layer_error_text, &
-        layer_shear_stiffness, layer_update, perturb_layer
-    use friction_mod, only : friction_bad_size, friction_is_orthotropic, statev_size
+    use friction_layer, only : layer_error_text, layer_update, make_symmetric, perturb_layer
+    use friction_mod, only : friction_bad_size, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! 3, 3, 6: 11, 22, 33, 12, 13, 23
     integer, intent(in) :: nstatv, nprops, noel, npt, kinc
@@ -40,7 +39,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     character(len=*), parameter :: rotated = '@ABAQUSNL'
     integer, parameter :: large_displacements = 1     ! in jstep(3)
     integer, parameter :: perturbation = 1            ! in jstep(4)
-    real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, dissipated
+    real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, dissipated, &
+        shear(2, 2)
     integer :: status
     logical :: perturbed
 
@@ -72,7 +72,12 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         else
             call layer_update(ndi, nshr, nprops, props, increment, dt, state, stress, ddsdde, &
                 elastic, dissipated, status)
-            if (status >= 0) ddsdde(5:6, 3) = 0.0_wp
+            if (status >= 0) then
+                ddsdde(5:6, 3) = 0.0_wp
+                shear = ddsdde(5:6, 5:6)
+                call make_symmetric(nprops, props, stress(5:6), shear)
+                ddsdde(5:6, 5:6) = shear
+            end if
         end if
         if (.not. perturbed) statev(1:statev_size) = state
     end if
@@ -80,23 +85,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
         call stop_with_cause(layer_error_text(status, props))
     end if
     if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
-    if (friction_is_orthotropic(props(first_friction_prop:))) call stiffen_shear(ddsdde)
 
 contains
-
-    !> Friction that depends on the direction has an unsymmetric stiffness also within the surface.
-    !> Of its symmetric part alone Newton's iterations go round in circles; with a small share of
-    !> the elastic stiffness they come to rest.
-    pure subroutine stiffen_shear(matrix)
-        real(wp), intent(inout) :: matrix(6, 6)
-        real(wp), parameter :: share = 0.05_wp
-        integer :: i
-
-        do i = 5, 6
-            matrix(i, 5:6) = (1.0_wp - share) * matrix(i, 5:6)
-            matrix(i, i) = matrix(i, i) + share * layer_shear_stiffness(props)
-        end do
-    end subroutine stiffen_shear
 
     !> As CalculiX ends for errors in an input deck.
     subroutine stop_with_cause(cause)

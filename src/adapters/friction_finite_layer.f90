@@ -13,7 +13,7 @@
 module friction_finite_layer
     use friction_host, only : hold_touching, host_update
     use friction_kinds, only : wp
-    use friction_layer, only : first_friction_prop, layer_constants, read_layer
+    use friction_layer, only : first_friction_prop, layer_constants, make_symmetric, read_layer
     use friction_mod, only : friction_bad_increment, statev_size
     implicit none
     private
@@ -46,7 +46,7 @@ contains
         integer, intent(out) :: status          !! of the friction routine
         type(layer_constants) :: layer
         type(separation) :: old, new
-        real(wp) :: du(3), traction(3), tangent(3, 3)
+        real(wp) :: du(3), traction(3), tangent(3, 3), shear(2, 2)
         logical :: usable
 
         call read_layer(nprops, props, layer, status)
@@ -63,6 +63,9 @@ contains
         call hold_touching(3, du, 0.0_wp, props(first_friction_prop), statev, tangent)
         tangent(2:3, 1) = 0.0_wp
         tangent = layer%thickness * tangent
+        shear = tangent(2:3, 2:3)
+        call make_symmetric(nprops, props, traction(2:3), shear)
+        tangent(2:3, 2:3) = shear
         call put_stress(new, layer%modulus, stran + dstran, traction, stress)
         call put_stiffness(new, layer%modulus, traction, tangent, ddsdde)
     end subroutine finite_layer_update

@@ -7,12 +7,13 @@ module friction_layer
     use friction_kinds, only : wp
     use friction_law_constants, only : positive
     use friction_mod, only : friction_bad_increment, friction_bad_property, friction_bad_size, &
-        friction_ok, prop_alpha_t, statev_dissipation, statev_size, statev_u_et, statev_u_n
+        friction_is_orthotropic, friction_ok, prop_alpha_t, statev_dissipation, statev_size, &
+        statev_u_et, statev_u_n
     implicit none
     private
 
-    public :: layer_constants, layer_error_text, layer_shear_stiffness, layer_update, &
-        perturb_layer, read_layer
+    public :: layer_constants, layer_error_text, layer_update, make_symmetric, perturb_layer, &
+        read_layer
 
     !> Places of the layer's own constants; those of the friction routine follow.
     integer, parameter :: prop_thickness = 1, prop_modulus = 2
@@ -66,13 +67,40 @@ contains
         call append(text, length, ', the thickness of the layer must be > 0 and its modulus >= 0')
     end function layer_error_text
 
-    !> Elastic shear stiffness, of constants that an update has taken.
-    pure function layer_shear_stiffness(props) result(stiffness)
-        real(wp), intent(in) :: props(first_friction_prop - 1 + prop_alpha_t)
-        real(wp) :: stiffness   !! [F/L^2]
+    !> Within the surface, the stiffness of friction that depends on the direction is not symmetric.
+    !> For a host that keeps the symmetric part of it.
+    !>
+    !> Radial sliding turns the traction only by motion across it: in axes along and across, the
+    !> stiffness is triangular. Its diagonal has the same eigenvalues, while the symmetric part may
+    !> be that of an unstable contact. Of that of other sliding Newton's iterations go round in
+    !> circles; with a small share of the elastic stiffness they come to rest.
+    pure subroutine make_symmetric(nprops, props, traction, stiffness)
+        integer, intent(in) :: nprops
+        real(wp), intent(in) :: props(nprops)     !! as in `layer_update`, after which it is called
+        real(wp), intent(in) :: traction(2)       !! tangential [F/L^2]
+        real(wp), intent(inout) :: stiffness(2, 2)   !! tangential [F/L^2]
+        real(wp), parameter :: share = 0.05_wp, round_off = sqrt(epsilon(1.0_wp))
+        real(wp) :: axes(2, 2), own(2, 2), length
+        integer :: i
 
-        stiffness = props(prop_thickness) * props(first_friction_prop - 1 + prop_alpha_t)
-    end function layer_shear_stiffness
+        if (.not. friction_is_orthotropic(props(first_friction_prop:))) return
+        length = hypot(traction(1), traction(2))
+        if (.not. length > 0.0_wp) return
+        axes(:, 1) = traction / length
+        axes(:, 2) = [-axes(2, 1), axes(1, 1)]
+        own = matmul(transpose(axes), matmul(stiffness, axes))
+        if (abs(own(2, 1)) <= round_off * sum(abs(own))) then
+            own(1, 2) = 0.0_wp
+            own(2, 1) = 0.0_wp
+            stiffness = matmul(axes, matmul(own, transpose(axes)))
+        else
+            stiffness = (1.0_wp - share) * stiffness
+            do i = 1, 2
+                stiffness(i, i) = stiffness(i, i) + share * props(prop_thickness) &
+                    * props(first_friction_prop - 1 + prop_alpha_t)
+            end do
+        end if
+    end subroutine make_symmetric
 
     !> Stress and stiffness of a layer element from a strain increment.
     !>

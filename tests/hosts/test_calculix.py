@@ -232,6 +232,15 @@ class CalculiX(unittest.TestCase):
                 print(f'\n  orthotropic Coulomb friction, {name}: {len(counts)} increments, iterations at most {max(counts)}')
                 self.assertEqual(len(counts), 10)   # none was cut
 
+    def test_radial_sliding_converges_under_shear_and_its_reversal(self):
+        for ratio in (0.5, 5.0):
+            for option in ('', ', NLGEOM'):
+                steps = (layer_deck.PRESSED + layer_deck.SHEARED).replace('*STEP', '*STEP' + option)
+                run_text(layer_deck.deck(4, LAYER, material([2, 1000, 800, 0.4, 0, ratio, 1]), steps), self.folder, 'reversed')
+                counts = iterations(self.folder, 'reversed')
+                print(f'\n  radial friction, ratio {ratio}{option}, reversed: {len(counts)} increments, iterations at most {max(counts)}')
+                self.assertEqual(len(counts), 30)   # none was cut
+
     def test_a_first_pressing_converges_in_which_most_of_the_surface_slips(self):
         for mu in (0.25, 0.28, 0.3):
             deck = layer_deck.deck(4, LAYER, material([2, 1000, 800, mu]), layer_deck.PRESSED)
