@@ -17,7 +17,7 @@ module abaqus_explicit_calls
         real(dp), allocatable :: normal(:, :)     !! global axes
     end type vfric_contact
 
-    character(len=80), parameter :: name = 'CONTACT'
+    character(len=80), parameter :: name = 'CONTACT OF BLOCKS'
     external :: vfric, vfriction, vuinter
 
 contains

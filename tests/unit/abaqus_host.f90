@@ -6,12 +6,13 @@ module abaqus_host
     integer, public :: errors_heard = 0                !! messages that end the job
     integer, public :: warnings_heard = 0
     character(len=500), public :: last_error = ''
+    character(len=8), public :: last_name = ''         !! of what the message is about
 
 end module abaqus_host
 
 subroutine stdb_abqerr(lop, text, intv, realv, charv)
     use, intrinsic :: iso_fortran_env, only : dp => real64
-    use abaqus_host, only : errors_heard, last_error, warnings_heard
+    use abaqus_host, only : errors_heard, last_error, last_name, warnings_heard
     implicit none
     integer, intent(in) :: lop, intv(*)
     character(len=500), intent(in) :: text
@@ -21,6 +22,7 @@ subroutine stdb_abqerr(lop, text, intv, realv, charv)
     if (lop == -3) errors_heard = errors_heard + 1
     if (lop == -1) warnings_heard = warnings_heard + 1
     last_error = text
+    last_name = charv(1)
 end subroutine stdb_abqerr
 
 subroutine xplb_abqerr(lop, text, intv, realv, charv)

@@ -31,7 +31,7 @@ module abaqus_standard_calls
 
     integer, public :: n_statev = 8   !! how many state variables the host says that there are
 
-    character(len=80), parameter :: name = 'CONTACT'
+    character(len=80), parameter :: name = 'CONTACT OF BLOCKS'
     external :: fric, uinter, umat
 
 contains
