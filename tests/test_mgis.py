@@ -250,8 +250,14 @@ class Mgis(unittest.TestCase):
             result = layer.integrate([0.0] * 4, [strain, 0, 0, 0], constants, [0.0] * 8, 0.1)
             self.assertIn('code -4', result.message)
             self.assertEqual(result.forces, [0.0] * 4)
-        quiet = behaviour('RateAndState', 'PlaneStrain').integrate([0, 0], [0, 0], properties('RateAndState'), [0.0] * 8, 0.0)
-        self.assertEqual(quiet.code, 1)   # neither time nor motion
+
+    def test_forces_as_they_stand_need_no_time(self):
+        zone, constants = behaviour('RateAndState', 'Tridimensional'), properties('RateAndState')
+        moved = zone.integrate([0, 0, 0], [-1e-2, 2e-3, 1e-3], constants, [0.0] * 8, 0.1)
+        quiet = zone.integrate([-1e-2, 2e-3, 1e-3], [-1e-2, 2e-3, 1e-3], constants, moved.state, 0.0)
+        self.assertEqual(quiet.code, 1)
+        self.near(quiet.forces, moved.forces, 10.0)
+        self.assertEqual(quiet.tangent, [[1000, 0, 0], [0, 800, 0], [0, 0, 800]])
 
     def test_what_is_no_number_raises_no_exception_in_the_host(self):
         arithmetic, serious = ctypes.CDLL(ctypes.util.find_library('m')), 1   # FE_INVALID of x86 and ARM

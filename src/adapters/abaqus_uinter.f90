@@ -99,8 +99,9 @@ contains
             base = statev(1:statev_size)
             call host_update(ndir, still, 0.0_wp, nprops, props, base, traction, tangent, status)
             ! a virgin point's gap is not known
-            if (status >= 0 .and. nint(statev(statev_status)) == point_open) &
+            if (status >= 0 .and. nint(statev(statev_status)) == point_open) then
                 call hold_touching(ndir, still, gap_of_none(), props, base, tangent)
+            end if
         end if
         if (status < 0) then
             call stdb_abqerr(-3, error_text('UINTER', status, props), [node], time, [ciname(1:8)])

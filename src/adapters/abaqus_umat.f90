@@ -41,8 +41,8 @@ subroutine stickslip_umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, dr
 
     if (ndi == 3 .and. jstep(3) == large_displacements) then
         if (tilt() > largest_tilt) then
-            call tell(-3, 'stickslip, UMAT: under NLGEOM a layer of solid elements has turned out ' &
-                // 'of its plane, and its normal is no longer the local axis; use cohesive ' &
+            call tell(-3, 'stickslip, UMAT: under NLGEOM a layer of solid elements has turned ' &
+                // 'out of its plane, and its normal is no longer the local axis; use cohesive ' &
                 // 'elements or UINTER')
             return
         end if
@@ -80,8 +80,8 @@ contains
 
         normal = nshr / 2 + 2   ! 3 in space, 2 in plane strain
         tilt = 0.0_wp
-        if (all(usable(dfgrd1(normal, 1:normal - 1)))) &
-            tilt = maxval(abs(dfgrd1(normal, 1:normal - 1)))
+        if (.not. all(usable(dfgrd1(normal, 1:normal - 1)))) return
+        tilt = maxval(abs(dfgrd1(normal, 1:normal - 1)))
     end function tilt
 
     !> The part of a rotation that is about the layer's normal. The rest comes of the shear, in

@@ -269,16 +269,15 @@ contains
             + props(prop_alpha_t) * (u_et1**2 + u_et2**2))
     end function elastic_energy
 
-    !> The factor on the time increment that a status asks for: below 1 where the host should cut. An
-    !> increment out of range is what iterations that diverged leave.
+    !> The factor on the time increment that a status asks for: below 1 where the host should cut.
+    !> An increment out of range is what iterations that diverged leave.
     pure function cut_factor(status) result(factor)
         integer, intent(in) :: status   !! of the friction routine
         real(wp) :: factor
 
         factor = 1.0_wp
         if (status == friction_snap_back) factor = 0.5_wp
-        if (status == friction_no_convergence .or. status == friction_bad_increment) &
-            factor = 0.25_wp
+        if (any(status == [friction_no_convergence, friction_bad_increment])) factor = 0.25_wp
     end function cut_factor
 
     !> The kind of Abaqus's message for an error: a warning where a shorter step may help, else -3,
@@ -306,8 +305,9 @@ contains
         call append_number(text, length, status)
         call append(text, length, ': ')
         call append(text, length, friction_message(status))
-        if (any(status == [friction_bad_size, friction_bad_law, friction_bad_property])) &
+        if (any(status == [friction_bad_size, friction_bad_law, friction_bad_property])) then
             call append_faults(text, length, props)
+        end if
     end function error_text
 
     pure subroutine append_faults(text, length, props)

@@ -106,7 +106,7 @@ class Behaviour:
         forces = numbers([0.0] * self.size), numbers([0.0] * self.size)
         states = numbers(state), numbers([float('nan')] * self.state_size)   # the end is not the start yet
         energies = [numbers([0.0]) for _ in range(4)]
-        operator = numbers([asked] + [0.0] * (self.size**2 - 1))
+        operator = numbers([asked] + [0.0 if 0.0 <= asked < 1.0 else 7.0] * (self.size**2 - 1))   # what stood there, stands there
         external, density, rdt = numbers([293.15] * len(self.external)), numbers([1.0]), numbers([largest_rdt])
         message = ctypes.create_string_buffer(ROOM_FOR_MESSAGE)
         speed = numbers([-1.0])

@@ -30,8 +30,8 @@ contains
         name = '@ABAQUS_STICKSLIP'
         pnewdt = -1.0_dp
         call umat(stress, statev, ddsdde, junk(1), junk(2), junk(3), junk(4), junk, junk, junk(5), &
-            stran, dstran, [time, time + 5.0_dp], dtime, 0.0_dp, 0.0_dp, junk, junk, name, 3, 3, 6, 8, &
-            props, size(props), zero, zero, pnewdt, junk(6), zero, zero, 1, 1, 1, 1, step, 1)
+            stran, dstran, [time, time + 5.0_dp], dtime, 0.0_dp, 0.0_dp, junk, junk, name, 3, 3, &
+            6, 8, props, size(props), zero, zero, pnewdt, junk(6), zero, zero, 1, 1, 1, 1, step, 1)
     end subroutine call_umat
 
 end module calculix_calls
