@@ -176,7 +176,7 @@ contains
         result%most_iterations = live%steps%most_iterations
         result%in_rates = live%steps%in_rates
         result%rejected = live%steps%rejected
-        result%onsets = live%slip_events%onsets
+        result%onsets = live%slip_events%onsets(:live%slip_events%events)
         result%pieces = live%slip_events%pieces
         result%friction = live%slip_events%friction
         result%peak_velocity = live%slip_events%peak_velocity

@@ -41,7 +41,8 @@ module slip_observer
         logical :: one_block = .true.
         logical :: jumps = .false.                     !! friction drops as slip begins
         type(facts) :: law
-        real(dp), allocatable :: onsets(:)             !! of the events [T]
+        integer :: events = 0
+        real(dp), allocatable :: onsets(:)             !! of the events, and room for more [T]
         real(dp) :: peak_velocity = 0.0_dp             !! [L/T]
     contains
         procedure :: prepare, see, visit
@@ -122,7 +123,9 @@ contains
         do k = 1, size(news%slip_events)
             i = min(self%drive%piece(news%slip_events(k)%onset), self%drive%listed)
             call add_event(self%pieces(i), news%slip_events(k), self%drive%start(i))
-            self%onsets = [self%onsets, news%slip_events(k)%onset]
+            if (self%events == size(self%onsets)) self%onsets = [self%onsets, self%onsets, 0.0_dp]
+            self%events = self%events + 1
+            self%onsets(self%events) = news%slip_events(k)%onset
             self%peak_velocity = max(self%peak_velocity, news%slip_events(k)%peak_velocity)
         end do
         self%peak_velocity = max(self%peak_velocity, news%sums%fastest, abs(self%finder%turning))
@@ -400,7 +403,9 @@ contains
             call self%pieces(i)%visit(file)
             call self%friction(i)%visit(file)
         end do
+        self%onsets = self%onsets(:self%events)
         call file%visit_list(self%onsets)
+        self%events = size(self%onsets)
         call file%visit(self%peak_velocity)
     end subroutine visit
 
