@@ -57,24 +57,26 @@ contains
         type(line_text), allocatable, intent(out) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
         character(len=:), allocatable :: text, old_input
-        type(line_text) :: line
-        integer :: first, last, number
+        type(line_text), allocatable :: lines(:)
+        integer :: first, last, number, n, i
 
         old_input = ''
-        allocate (rows(0))
         call read_whole_file(name, text, problem)
+        allocate (lines(count([(text(i:i) == new_line('a'), i = 1, len(text))])))
         last = -1
         number = 0
+        n = 0
         do
             call next_line(text, first, last, number)
             if (last == len(text)) exit
-            line%text = text(first:last)
-            if (index(line%text, mark) == 1) then
-                old_input = old_input // line%text(len(mark) + 1:) // new_line('a')
+            if (index(text(first:last), mark) == 1) then
+                old_input = old_input // text(first + len(mark):last) // new_line('a')
             else
-                rows = [rows, line]
+                n = n + 1
+                lines(n)%text = text(first:last)
             end if
         end do
+        rows = lines(:n)
         problem = ''
         if (len(old_input) > 0 .and. old_input /= input) problem = name // ' holds results of ' &
             // 'another input: delete it, or write elsewhere with --output'

@@ -167,17 +167,28 @@ contains
         call done%open(journal_name(wanted, base), input, known, problem)
     end subroutine open_journal
 
+    !> Rows are about in the order of the combinations: the next one is looked for behind the last.
     subroutine take_rows(plan, known, rows)
         type(sweep_plan), intent(in) :: plan
         type(line_text), intent(in) :: known(:)
         type(line_text), intent(inout) :: rows(:)
-        integer :: i, j
+        type(line_text), allocatable :: starts(:)
+        integer :: i, j, tried
 
         if (size(known) == 0) return
+        allocate (starts(size(rows)))
         do i = 1, size(rows)
-            do j = 1, size(known)
-                if (index(known(j)%text, point_text(plan%point(i))) == 1) rows(i) = known(j)
-            end do
+            starts(i)%text = point_text(plan%point(i))
+        end do
+        i = 0
+        do j = 1, size(known)
+            associate (row => known(j)%text)
+                do tried = 1, size(rows)
+                    i = 1 + modulo(i, size(rows))
+                    if (row(:min(len(row), len(starts(i)%text))) == starts(i)%text) exit
+                end do
+                if (tried <= size(rows)) rows(i)%text = row
+            end associate
         end do
     end subroutine take_rows
 
@@ -194,13 +205,14 @@ contains
         type(child), allocatable :: children(:)
         integer, allocatable :: combination(:)    !! that a child runs
         type(progress) :: bar
-        integer :: i, next
+        integer :: i, next, finished
 
         problem = ''
         i = wanted%jobs
         if (wanted%jobs == 0) i = cores()
         allocate (children(i), combination(i))
         next = 1
+        finished = count_rows(pack(rows, mine))
         call bar%begin(.not. wanted%quiet, 0.0_dp)
         do
             do i = 1, size(children)
@@ -208,7 +220,7 @@ contains
             end do
             if (.not. any(children%running())) exit
             call take_result()
-            call bar%show(real(count_rows(pack(rows, mine)), dp) / count(mine))
+            call bar%show(real(finished, dp) / count(mine))
         end do
         call bar%clear()
 
@@ -243,6 +255,7 @@ contains
             if (.not. sound) text = failure_text('the run crashed')
             associate (row => rows(combination(k)))
                 row%text = point_text(plan%point(combination(k))) // text
+                finished = finished + 1
                 if (sound) call done%append(row%text)
             end associate
         end subroutine take_result
