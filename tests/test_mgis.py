@@ -197,7 +197,7 @@ class Mgis(unittest.TestCase):
     def test_a_prediction_integrates_nothing_and_a_virgin_point_predicts_its_springs(self):
         zone = behaviour('Coulomb', 'Tridimensional')
         for asked in (-1.0, -2.0, -3.0, 99.0):
-            result = zone.integrate([0.0] * 3, [-1.0, 1.0, 0.0], properties('Coulomb'), [0.0] * 8, 0.1, asked=asked)
+            result = zone.integrate([0.0] * 3, [math.nan] * 3, properties('Coulomb'), [0.0] * 8, 0.1, asked=asked)
             self.assertEqual(result.code, 1)
             self.assertEqual(result.tangent, [[1000, 0, 0], [0, 800, 0], [0, 0, 800]])
             self.assertEqual(result.forces, [0.0] * 3)
@@ -257,7 +257,10 @@ class Mgis(unittest.TestCase):
         quiet = zone.integrate([-1e-2, 2e-3, 1e-3], [-1e-2, 2e-3, 1e-3], constants, moved.state, 0.0)
         self.assertEqual(quiet.code, 1)
         self.near(quiet.forces, moved.forces, 10.0)
-        self.assertEqual(quiet.tangent, [[1000, 0, 0], [0, 800, 0], [0, 0, 800]])
+        springs = [[1000, 0, 0], [0, 800, 0], [0, 0, 800]]
+        self.assertEqual(quiet.tangent, springs)
+        predicted = zone.integrate([-1e-2, 2e-3, 1e-3], [math.nan] * 3, constants, moved.state, 0.1, asked=-3.0)
+        self.assertEqual(predicted.tangent, springs)   # a prediction lets no time pass
 
     def test_what_is_no_number_raises_no_exception_in_the_host(self):
         arithmetic, serious = ctypes.CDLL(ctypes.util.find_library('m')), 1   # FE_INVALID of x86 and ARM
@@ -275,8 +278,11 @@ class Mgis(unittest.TestCase):
         constants = properties('Subloading', TangentialStiffness=100.0, StaticFriction=0.6, KineticFriction=0.1,
                                AdhesionBreakingExponent=100.0, AdhesionFormingExponent=0.0, SubloadingExponent=1e4)
         slid = [2.0, -1e-2, 0.054, 0.0, 0.6, 0.9, 0.0, 0.0]
-        result = weak.integrate([-1e-2, 0.0], [-1e-2, 2e-3], constants, slid, 0.1)
-        self.assertEqual((result.code, result.rdt), (0, 0.5))
+        for largest, expected in ((1.0, 0.5), (0.6, 0.5), (0.4, 0.4), (0.05, 0.05)):
+            result = weak.integrate([-1e-2, 0.0], [-1e-2, 2e-3], constants, slid, 0.1, largest_rdt=largest)
+            self.assertEqual((result.code, result.rdt), (0, expected))
+            result = weak.integrate([-1e-2, 0.0], [-1e-2, math.nan], constants, slid, 0.1, largest_rdt=largest / 4)
+            self.assertEqual((result.code, result.rdt), (-1, min(largest / 4, 0.1)))
 
     def test_any_directory_and_any_number_of_threads(self):
         # as MGIS loads it: by its path alone, all symbols resolved at once

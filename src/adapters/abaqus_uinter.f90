@@ -98,14 +98,13 @@ contains
         if (nstatv >= statev_size) then
             base = statev(1:statev_size)
             call host_update(ndir, still, 0.0_wp, nprops, props, base, traction, tangent, status)
-            ! a virgin point's gap is not known
-            if (status >= 0 .and. nint(statev(statev_status)) == point_open) then
-                call hold_touching(ndir, still, gap_of_none(), props, base, tangent)
-            end if
         end if
         if (status < 0) then
             call stdb_abqerr(-3, error_text('UINTER', status, props), [node], time, [ciname(1:8)])
             return
+        end if
+        if (nint(statev(statev_status)) == point_open) then   ! a virgin point's gap is not known
+            call hold_touching(ndir, still, gap_of_none(), props, base, tangent)
         end if
         ddsddr(1:ndir, 1:ndir) = reshape(tangent(1:ndir**2), [ndir, ndir])
     end subroutine base_stiffness

@@ -15,12 +15,12 @@
 subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, &
     time, dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv, props, nprops, &
     coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, jstep, kinc)
-    use friction_host, only : append, append_number, cut_factor, error_length, used_length
+    use friction_host, only : append, append_number, cut_factor, error_length, usable, used_length
     use friction_host_end, only : end_host, to_output
     use friction_kinds, only : wp
     use friction_finite_layer, only : finite_layer_update
     use friction_layer, only : layer_error_text, layer_update, make_symmetric, perturb_layer
-    use friction_mod, only : friction_bad_size, statev_size
+    use friction_mod, only : friction_bad_increment, friction_bad_size, statev_size
     implicit none
     integer, intent(in) :: ndi, nshr, ntens           !! 3, 3, 6: 11, 22, 33, 12, 13, 23
     integer, intent(in) :: nstatv, nprops, noel, npt, kinc
@@ -39,20 +39,32 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     character(len=*), parameter :: rotated = '@ABAQUSNL'
     integer, parameter :: large_displacements = 1     ! in jstep(3)
     integer, parameter :: perturbation = 1            ! in jstep(4)
-    real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, dissipated, &
-        shear(2, 2)
     integer :: status
     logical :: perturbed
 
     if (cmname(1:len(rotated)) == rotated) call stop_with_cause('stickslip, UMAT: ' // rotated &
         // '_STICKSLIP hands over logarithmic strain, whose axes turn with the slip; write ' &
         // '@ABAQUS_STICKSLIP, with or without NLGEOM')
-    ! At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
-    ! the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
-    ! a perturbation step is about, and then for the stress of each mode, with that mode's strain.
     status = friction_bad_size
     perturbed = jstep(4) == perturbation
     if (nstatv >= statev_size .and. ntens == 6) then
+        status = friction_bad_increment
+        if (all(usable(stran) .and. usable(dstran))) call update()
+    end if
+    if (status < 0 .and. (perturbed .or. .not. cut_factor(status) < 1.0_wp)) then
+        call stop_with_cause(layer_error_text(status, props))
+    end if
+    if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
+
+contains
+
+    !> At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
+    !> the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
+    !> a perturbation step is about, and then for the stress of each mode, with that mode's strain.
+    subroutine update()
+        real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, &
+            dissipated, shear(2, 2)
+
         state = statev(1:statev_size)
         start = stran
         increment = dstran
@@ -80,13 +92,7 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
             end if
         end if
         if (.not. perturbed) statev(1:statev_size) = state
-    end if
-    if (status < 0 .and. (perturbed .or. .not. cut_factor(status) < 1.0_wp)) then
-        call stop_with_cause(layer_error_text(status, props))
-    end if
-    if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
-
-contains
+    end subroutine update
 
     !> As CalculiX ends for errors in an input deck.
     subroutine stop_with_cause(cause)

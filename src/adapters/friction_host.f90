@@ -128,14 +128,14 @@ contains
     pure subroutine hold_touching(ndir, du, reach, props, statev, tangent)
         integer, intent(in) :: ndir                       !! as in `host_update`, after which it is
                                                           !! called, and so on
-        real(wp), intent(in) :: du(ndir)
+        real(wp), intent(in) :: du(ndir)   !! beside nothing, anything
         real(wp), intent(in) :: reach      !! the widest gap that is none, or 0 [L]
         real(wp), intent(in) :: props(prop_alpha_t)
         real(wp), intent(in) :: statev(statev_size)       !! at the end of the increment
         real(wp), intent(inout) :: tangent(ndir, ndir)
 
-        if (nint(statev(statev_status)) == point_open .and. all(abs(du) <= 0.0_wp) &
-            .and. statev(statev_u_n) <= reach) call put_springs(ndir, props, tangent)
+        if (nint(statev(statev_status)) /= point_open .or. statev(statev_u_n) > reach) return
+        if (all(abs(du) <= 0.0_wp)) call put_springs(ndir, props, tangent)
     end subroutine hold_touching
 
     pure subroutine put_springs(ndir, props, tangent)

@@ -102,6 +102,7 @@ class Behaviour:
     def integrate(self, start, end, properties, state, dt, asked=4.0, largest_rdt=1.0, sound=None):
         """One call of the update: gradients at the start and at the end, material properties (a dict), internal state."""
         constants = numbers(properties[name] for name in self.properties)
+        former = numbers([float('nan')] * len(self.properties))   # constants at the start, which may be others
         gradients = numbers(start), numbers(end)
         forces = numbers([0.0] * self.size), numbers([0.0] * self.size)
         states = numbers(state), numbers([float('nan')] * self.state_size)   # the end is not the start yet
@@ -117,7 +118,7 @@ class Behaviour:
         data = Data(ctypes.cast(message, ctypes.c_char_p), dt, address(operator), address(rdt), address(speed))
         for k, side in enumerate((data.s0, data.s1)):
             side.gradients, side.thermodynamic_forces = address(gradients[k]), address(forces[k])
-            side.mass_density, side.material_properties = address(density), address(constants)
+            side.mass_density, side.material_properties = address(density), address(constants if k else former)
             side.internal_state_variables = address(states[k])
             side.stored_energy, side.dissipated_energy = address(energies[2 * k]), address(energies[2 * k + 1])
             side.external_state_variables = address(external)
