@@ -39,44 +39,35 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
     character(len=*), parameter :: rotated = '@ABAQUSNL'
     integer, parameter :: large_displacements = 1     ! in jstep(3)
     integer, parameter :: perturbation = 1            ! in jstep(4)
+    real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, dissipated, &
+        shear(2, 2)
     integer :: status
-    logical :: perturbed
+    logical :: perturbed, as_it_is   ! from the strain to itself
 
     if (cmname(1:len(rotated)) == rotated) call stop_with_cause('stickslip, UMAT: ' // rotated &
         // '_STICKSLIP hands over logarithmic strain, whose axes turn with the slip; write ' &
         // '@ABAQUS_STICKSLIP, with or without NLGEOM')
+    ! At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
+    ! the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
+    ! a perturbation step is about, and then for the stress of each mode, with that mode's strain.
     status = friction_bad_size
     perturbed = jstep(4) == perturbation
+    as_it_is = time(1) < 0.0_wp .or. perturbed
     if (nstatv >= statev_size .and. ntens == 6) then
-        status = friction_bad_increment
-        if (all(usable(stran) .and. usable(dstran))) call update()
-    end if
-    if (status < 0 .and. (perturbed .or. .not. cut_factor(status) < 1.0_wp)) then
-        call stop_with_cause(layer_error_text(status, props))
-    end if
-    if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
-
-contains
-
-    !> At the start of a dynamic step CalculiX asks for the forces as they are: with a time before
-    !> the step, any dtime, and the whole strain as its increment. So it asks for the stiffness that
-    !> a perturbation step is about, and then for the stress of each mode, with that mode's strain.
-    subroutine update()
-        real(wp) :: state(statev_size), start(6), increment(6), change(6), dt, elastic, &
-            dissipated, shear(2, 2)
-
         state = statev(1:statev_size)
-        start = stran
         increment = dstran
         dt = dtime
-        if (time(1) < 0.0_wp .or. perturbed) then   ! from the strain to itself
-            start = stran + dstran
+        if (as_it_is) then
             increment = 0.0_wp
             dt = 0.0_wp
         end if
         if (jstep(3) == large_displacements) then
-            call finite_layer_update(nprops, props, start, increment, dt, state, stress, ddsdde, &
-                status)
+            status = friction_bad_increment
+            if (all(usable(stran) .and. usable(dstran))) then
+                start = stran + (dstran - increment)
+                call finite_layer_update(nprops, props, start, increment, dt, state, stress, &
+                    ddsdde, status)
+            end if
         else if (perturbed) then
             call perturb_layer(ndi, nshr, nprops, props, dstran, state, stress, ddsdde, change, &
                 status)
@@ -92,7 +83,13 @@ contains
             end if
         end if
         if (.not. perturbed) statev(1:statev_size) = state
-    end subroutine update
+    end if
+    if (status < 0 .and. (perturbed .or. .not. cut_factor(status) < 1.0_wp)) then
+        call stop_with_cause(layer_error_text(status, props))
+    end if
+    if (cut_factor(status) < 1.0_wp) pnewdt = cut_factor(status)
+
+contains
 
     !> As CalculiX ends for errors in an input deck.
     subroutine stop_with_cause(cause)
