@@ -53,6 +53,19 @@ class Errors(unittest.TestCase):
             self.assertEqual(result.returncode, 201, result.stdout + result.stderr)
             self.assertRegex(result.stdout, rf'\*ERROR in umat: stickslip, UMAT, code {code}: .*, element 7, point 5')
 
+    def test_constants_at_fault_are_named_as_far_as_there_is_room(self):
+        nan = float('nan')
+        for props, named in (
+                ((1, 1000, -1, 0.2, 0.4, 8, 0.2, -1), 'alpha_t must be > 0, mu_s must be >= mu_k, m must be > 0, el'),
+                ((1, 1000, 800, 0.4, 0.2, 8, 0.2, 60, 0.1), 'mu_0 must be from mu_k to mu_s, element'),
+                ((2, 1000, 800, -0.4, -1, 0.5, 1, -1), 'mu must be >= 0, tau_max must be >= 0, cohesion must be >= 0, element'),
+                ((2, -1, nan, -1), 'the constants must be finite numbers, up to 1.7e100, element'),
+                ((2, -1, 800), 'mu is missing, element'), ((77, -1), 'the first constant must be the number of a law, element'),
+                ((7, *[-1] * 16), 'alpha_n must be > 0, .*n must be from 1 to 1000, .*, element')):
+            with self.subTest(props=props):
+                self.assertRegex(self.call('calculix', props).stdout, f': {named}.*7, point 5')
+        self.assertIn('code -1: ', self.call('calculix', ()).stdout)
+
     def test_sizes_are_those_of_the_host(self):
         for host, place in (('calculix', 'stdout'), ('kratos', 'stderr')):
             for sizes in ((6, 7), (4, 8)):   # components of the stress, numbers of the state

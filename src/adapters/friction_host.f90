@@ -4,8 +4,7 @@ module friction_host
     use friction_contact, only : point_open
     use friction_kinds, only : wp
     use friction_mod, only : array_sizes, broken_rule, constant_table, friction_bad_increment, &
-        friction_bad_law, friction_bad_property, friction_bad_size, friction_check, &
-        friction_constants, friction_default, friction_law_of, friction_message, &
+        friction_check, friction_constants, friction_law_of, friction_message, &
         friction_no_convergence, friction_ok, friction_snap_back, friction_tangential, &
         friction_zero_time_increment, prop_alpha_n, prop_alpha_t, statev_size, statev_status, &
         statev_u_et, statev_u_n, text_length, update_arrays
@@ -305,11 +304,10 @@ contains
         call append_number(text, length, status)
         call append(text, length, ': ')
         call append(text, length, friction_message(status))
-        if (any(status == [friction_bad_size, friction_bad_law, friction_bad_property])) then
-            call append_faults(text, length, props)
-        end if
+        call append_faults(text, length, props)
     end function error_text
 
+    !> Writes which constants break which rules; of those with numbers that are none, that alone.
     pure subroutine append_faults(text, length, props)
         character(len=error_length), intent(inout) :: text
         integer, intent(inout) :: length
@@ -318,22 +316,21 @@ contains
         type(constant_table) :: table
         character(len=text_length) :: cause
         real(wp) :: full(size(table%of))
-        integer :: place, i, status
+        integer :: place, i, status, n
 
         call friction_check(props, place, cause, status)
         if (status >= 0) return
         call append(text, length, ': ')
         call append(text, length, cause(:used_length(cause)))
-        if (status /= friction_bad_property .or. .not. all(usable(props))) return
+        if (place == 0 .or. .not. all(usable(props))) return
         table = friction_constants(friction_law_of(props))
-        full = 0.0_wp
-        do i = 1, table%n
-            if (i <= size(props)) full(i) = props(i)
-            if (i > size(props)) full(i) = friction_default(full(:i), i)
-        end do
-        do i = place + 1, min(table%n, size(props))
+        n = min(table%n, size(props))
+        full = 0.0_wp   ! what is left out
+        full(:n) = props(:n)
+        do i = place + 1, n
             cause = broken_rule(table, i, full)
-            if (used_length(cause) == 0 .or. place == 0 .or. length > room - text_length) cycle
+            if (used_length(cause) == 0) cycle
+            if (length + text_length > room) return
             call append(text, length, ', ')
             call append(text, length, table%of(i)%name(:used_length(table%of(i)%name)))
             call append(text, length, ' ')

@@ -60,9 +60,9 @@ contains
         type(layer_constants) :: layer
         integer :: length, found
 
-        text = error_text('UMAT', status, props(min(first_friction_prop, size(props) + 1):))
+        text = error_text('UMAT', status, props(first_friction_prop:))
         call read_layer(size(props), props, layer, found)
-        if (status /= friction_bad_property .or. found /= friction_bad_property) return
+        if (found /= friction_bad_property) return
         length = used_length(text)
         call append(text, length, ', the thickness of the layer must be > 0 and its modulus >= 0')
     end function layer_error_text
