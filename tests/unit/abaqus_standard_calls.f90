@@ -67,7 +67,7 @@ contains
         call uinter(stress, stiffness, zero, zero, zero, zero, zero, zero, statev, answer%sed, &
             answer%dissipated(1), answer%dissipated(2), answer%dissipated(3), &
             answer%dissipated(4), answer%pnewdt, rdisp, drdisp, zero, zero, zero, zero, zero, &
-            dtime, 0.0_dp, name, name, name, props, zero, zero, drot, 1.0_dp, 1.0_dp, 1, &
+            dtime, 0.0_dp, name, name, name, props, zero, zero, drot, 1.0_dp, 0.5_dp, 1, &
             size(rdisp), n_statev, 1, size(props), 3, 1, 1, 1, linear, answer%openclose, &
             answer%state, answer%severe, 0)
     end subroutine call_uinter
