@@ -142,6 +142,7 @@ contains
         character(len=:), allocatable, intent(out) :: problem
         type(picture_values) :: values
         character(len=1), parameter :: place(2) = ['1', '2']
+        real(dp) :: half   ! of a cell, as a factor; 1 where there is only one
         integer :: i
 
         call values%begin(stem, stem // '_map.csv', names)
@@ -151,7 +152,8 @@ contains
                 call values%set('key_' // place(i), axis%name)
                 call values%set('lowest_' // place(i), axis%range(1))
                 call values%set('highest_' // place(i), axis%range(2))
-                call values%set('half_' // place(i), sqrt(axis%value_at(1) / axis%value_at(0)))
+                half = sqrt(axis%value_at(1) / axis%value_at(0))
+                call values%set('half_' // place(i), merge(half, 1.1_dp, half > 1.0_dp))
                 call values%set('here_' // place(i), abs(this%value_of(axis%name)))
             end associate
         end do

@@ -188,6 +188,14 @@ class GoodInput(Program):
         self.assertEqual((out / "it's a case.png").read_bytes()[:4], b'\x89PNG')
         self.assertTrue((out / "it's a case.gp").exists())
 
+    @needs_gnuplot
+    def test_picture_of_a_block_at_rest(self):
+        for law in ('subloading', 'rate_and_state'):
+            text = law_namelist(law) if law in LAWS else namelist()
+            result = self.run_text(text.replace('velocity = 1', 'velocity = 0'))
+            self.assertEqual((result.returncode, result.stderr), (0, ''))
+            self.assertGreater((self.folder / 'case_out/case.svg').stat().st_size, 1000)
+
     def test_without_gnuplot_the_run_succeeds_and_says_what_to_install(self):
         sh_only = self.folder / 'bin'
         sh_only.mkdir()

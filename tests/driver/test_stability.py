@@ -367,7 +367,12 @@ class Boundary(Stability):
 
     @needs_gnuplot
     def test_the_picture_is_drawn(self):
-        for change in ({}, {('sweep', 'key'): "'slider%mass'", ('sweep', 'values'): '1e-3, 1e-1'}, {('friction', 'mu_k'): '0.4'}):
+        lonely = {('sweep', 'key'): "'drive%velocity'", ('sweep', 'values'): '1', ('sweep', 'key2'): "'slider%stiffness'",
+                  ('sweep', 'values2'): '0.5, 1, 2'}
+        # disturbances grow at a frequency of 3, beyond the values of both keys
+        slow = {**lonely, ('sweep', 'values'): '1, 1.01', ('sweep', 'values2'): '6, 6.1', ('slider', 'damping'): '0'}
+        for change in ({}, {('sweep', 'key'): "'slider%mass'", ('sweep', 'values'): '1e-3, 1e-1'}, {('friction', 'mu_k'): '0.4'},
+                       lonely, slow):
             result = self.run_text(namelist(change), verb='stability')
             self.assertEqual((result.returncode, result.stderr), (0, ''))
             for ending in ('png', 'svg', 'gp'):

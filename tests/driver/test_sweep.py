@@ -129,17 +129,21 @@ class Table(Sweep):
 
 class Picture(Sweep):
     @needs_gnuplot
-    def test_pictures_are_drawn_also_where_nothing_sticks_or_all_has_failed(self):
+    def test_pictures_are_drawn_also_where_nothing_sticks_or_all_has_failed_or_periods_are_long(self):
         failing = {('time', 'max_iterations'): '1'}
+        slow = {**TWO_KEYS, ('sweep', 'values'): '1e-3, 2e-3', ('sweep', 'values2'): '1, 2', ('time', 't_end'): '4e4',
+                ('time', 'rtol'): '1e-3'}
         for number, text in enumerate((
                 sweep('drive%velocity', '1'), sweep('drive%velocity', '-1, 0, 1000'), namelist(TWO_KEYS),
-                sweep('time%dt', '1e-3 2e-3', failing), namelist({**TWO_KEYS, **failing}))):
+                sweep('time%dt', '1e-3 2e-3', failing), namelist({**TWO_KEYS, **failing}),
+                namelist(slow, [('time', 'dt')]))):
             result = self.run_text(text, '--output', f'out {number}', verb='sweep')
             self.assertNotIn('gnuplot', result.stderr)
             out = self.folder / f'out {number}'
             self.assertEqual((out / 'case_sweep.png').read_bytes()[:4], b'\x89PNG')
             self.assertTrue((out / 'case_sweep.gp').exists())
-
+        periods = [float(row['period']) for row in self.rows('out 5/case_sweep.csv')]
+        self.assertGreater(min(periods), 2)   # more than there are cells
 
     @needs_gnuplot
     def test_each_cell_of_the_map_lies_at_the_values_of_its_row(self):

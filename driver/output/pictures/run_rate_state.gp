@@ -14,10 +14,11 @@ pressing(n) = n > 0 ? n : NaN
 positive(x) = x > 0 ? x : NaN
 noticed(x) = x > slowest ? x : NaN
 # the mean slip rate since the row before; of thinned rows the block's velocity
-last_t = NaN
-last_s = NaN
-rate(t, s, v) = (r = thinned ? abs(v) : (s - last_s) / (t - last_t), last_t = t, last_s = s, \
-    noticed(r))
+rate(t, s, v) = (r = thinned ? abs(v) : column(0) > 0 ? (s - last_s) / (t - last_t) : NaN, \
+    last_t = t, last_s = s, noticed(r))
+slips = 0
+stats file using (slips = slips || rate(column("time"), column("slip"), column("velocity")) > 0, \
+    column("time")) nooutput
 if (!exists("ending")) { ending = "png" }
 set terminal pngcairo size 1700,1100 font "Sans,12"
 if (ending eq "svg") { set terminal svg size 1700,1100 font "Sans,12" background "white" }
@@ -29,10 +30,14 @@ set ylabel "force [".force_unit."]"
 plot file using "time":"friction_force" with lines ls 9 title "friction", \
      file using "time":"spring_force" with lines ls 1 title "spring"
 set ylabel "slip rate [".length_unit."/".time_unit."]"
-set logscale y
-set format y "10^{%T}"
-plot file using "time":(rate(column("time"), column("slip"), column("velocity"))) \
-         with lines ls 3 title "slip rate"
+if (slips) {
+    set logscale y
+    set format y "10^{%T}"
+    plot file using "time":(rate(column("time"), column("slip"), column("velocity"))) \
+             with lines ls 3 title "slip rate"
+} else {
+    plot file using "time":(0) with lines ls 3 title "slip rate: too small to show"
+}
 unset logscale
 set format y "% h"
 set ylabel "friction / normal force [-]"
@@ -53,8 +58,10 @@ set ylabel "mu [-]"
 set xlabel "slip rate [".length_unit."/".time_unit."]"
 set logscale x
 set format x "10^{%T}"
-plot file using (rate(column("time"), column("slip"), column("velocity"))):"mu" \
-         with lines ls 2 title "mu at this slip rate"
+if (slips) {
+    plot file using (rate(column("time"), column("slip"), column("velocity"))):"mu" \
+             with lines ls 2 title "mu at this slip rate"
+}
 set format x "% h"
 unset multiplot
 set output

@@ -1,8 +1,11 @@
 # Where steady sliding is stable, over two keys on logarithmic axes: blue where small disturbances
 # die away; elsewhere the colour is the frequency at which they grow, grey where they do not swing.
+reset
 set datafile separator ","
 set datafile columnheaders
 is(name) = stringcolumn("stability") eq name
+# before the ranges, beyond which stats sees nothing
+if (swings) { stats file using (is("unstable") && column("frequency") > 0 ? column("frequency") : NaN) nooutput }
 set logscale xy
 set xrange [lowest_1 / half_1:highest_1 * half_1]
 set yrange [lowest_2 / half_2:highest_2 * half_2]
@@ -28,7 +31,6 @@ set palette defined (0 "#fde0a0", 1 "#d55e00", 2 "#5a1a00")
 set cblabel "frequency of the growing disturbance [1/".time_unit."]" offset 2
 if (swings) {
     set logscale cb
-    stats file using (is("unstable") && column("frequency") > 0 ? column("frequency") : NaN) nooutput
     if (STATS_max < 1e2 * STATS_min) {
         set for [k = floor(log10(STATS_min)):ceil(log10(STATS_max))] \
             for [m in digits(STATS_max / STATS_min)] \

@@ -1,20 +1,9 @@
 # A sweep over two keys: regime, period and stress drop in cells, the first key to the right, the
 # second one up. Cells without period and drop stay white.
+reset
 set datafile separator ","
 set datafile columnheaders
-regime(name) = stringcolumn("regime") eq name
-# a cell a row of the table; the second key changes fastest
-right(i) = int(column(i)) / up_cells
-up(i) = int(column(i)) % up_cells
-set xrange [-0.5:right_cells - 0.5]
-set yrange [-0.5:up_cells - 0.5]
-eval "set xtics out nomirror rotate (".tics_1.")"
-eval "set ytics out nomirror (".tics_2.")"
-set bmargin 9
-set tmargin 4
-set lmargin 12
-set rmargin 14
-set palette defined (0 "#fde725", 1 "#21918c", 2 "#440154")
+# before the ranges, beyond which stats sees nothing
 log_1 = 0
 log_2 = 0
 if (found > 0) {
@@ -23,6 +12,19 @@ if (found > 0) {
     stats file using "stress_drop" nooutput
     log_2 = STATS_max > 20 * STATS_min
 }
+regime(name) = stringcolumn("regime") eq name
+# a cell a row of the table; the second key changes fastest
+right(i) = int(column(i)) / up_cells
+up(i) = int(column(i)) % up_cells
+set xrange [-0.5:right_cells - 0.5]
+set yrange [-0.5:up_cells - 0.5]
+eval "set xtics out nomirror rotate (".tics_1.")"
+eval "set ytics out nomirror (".tics_2.")"
+set bmargin 11   # four lines of the key, below the name of the axis
+set tmargin 4
+set lmargin 12
+set rmargin 14
+set palette defined (0 "#fde725", 1 "#21918c", 2 "#440154")
 if (!exists("ending")) { ending = "png" }
 set terminal pngcairo size 1800,650 font "Sans,12"
 if (ending eq "svg") { set terminal svg size 1800,650 font "Sans,12" background "white" }
