@@ -136,7 +136,8 @@ contains
     end subroutine describe
 
     !> BASE_fields.dat for a picture: slip rates in cells of blocks and times, in each the largest;
-    !> `time block slip_rate`, an empty line after each time.
+    !> `time block slip_rate` where a cell begins, an empty line after each time. What ends the last
+    !> cells has their values, too.
     subroutine sample_fields(base, n_blocks, done)
         character(len=*), intent(in) :: base
         integer, intent(in) :: n_blocks
@@ -146,6 +147,7 @@ contains
         type(output_file) :: sample
         real(dp) :: rate(n_blocks)
         real(dp), allocatable :: largest(:)
+        real(dp) :: start
         integer(int64) :: records, i
         integer :: times, blocks, k
 
@@ -156,6 +158,7 @@ contains
         blocks = (n_blocks - 1) / most_cells + 1
         largest = spread(0.0_dp, 1, (n_blocks - 1) / blocks + 1)
         call sample%create(base // '_fields.dat')
+        start = 0.0_dp
         do i = 1, records
             call fields%parts%read_record(i, slip_rate, rate)
             if (fields%parts%failed) exit
@@ -164,15 +167,28 @@ contains
                     k * blocks))))
             end do
             if (mod(i, int(times, int64)) > 0 .and. i < records) cycle
-            do k = 1, size(largest)
-                call sample%write_line(full_row([fields%parts%times(i), 1.0_dp + (k - 1) &
-                    * blocks, largest(k)], ' '))
-            end do
-            call sample%write_line('')
+            call write_cells()
+            start = fields%parts%times(i)
+            if (i == records) call write_cells()
             largest = 0.0_dp
         end do
         call sample%finish()
         done = records > 0 .and. .not. (fields%parts%failed .or. sample%failed)
+
+    contains
+
+        subroutine write_cells()
+            integer :: k
+
+            do k = 1, size(largest)
+                call sample%write_line(full_row([start, 0.5_dp + (k - 1) * blocks, largest(k)], &
+                    ' '))
+            end do
+            call sample%write_line(full_row([start, 0.5_dp + n_blocks, largest(size(largest))], &
+                ' '))
+            call sample%write_line('')
+        end subroutine write_cells
+
     end subroutine sample_fields
 
 end module chain_fields

@@ -469,9 +469,15 @@ class Catalogue(Chain):
             **RUN, ('chain', 'n_blocks'): '700', ('output', 'fields'): '4'}))
         result = self.run_program('run', 'case.nml')
         self.assertEqual((result.returncode, result.stderr), (0, ''))
-        cells = [line.split() for line in (self.folder / 'case_out/case_fields.dat').read_text().splitlines() if line]
-        self.assertLess(len(cells), 1e5)
-        self.assertEqual(max(float(cell[2]) for cell in cells), max(max(rates) for _, rates, _, _ in self.fields(700)))
+        corners = [[tuple(map(float, line.split())) for line in column.splitlines()] for column in
+                   (self.folder / 'case_out/case_fields.dat').read_text().strip().split('\n\n')]
+        self.assertLess(sum(map(len, corners)), 1e5)
+        records = self.fields(700)
+        self.assertEqual((corners[0][0][:2], corners[-1][-1][:2]), ((0.0, 0.5), (records[-1][0], 700.5)))
+        for column, after in zip(corners, corners[1:]):
+            within = [rates for time, rates, _, _ in records if column[0][0] < time <= after[0][0]]
+            for (_, low, rate), (_, high, _) in zip(column, column[1:]):
+                self.assertEqual(rate, max(max(rates[int(low + 0.5) - 1:int(high + 0.5) - 1]) for rates in within))
 
     @needs_gnuplot
     def test_pictures_are_drawn(self):
