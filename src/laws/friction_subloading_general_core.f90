@@ -23,9 +23,11 @@ contains
         real(wp), intent(in) :: r_n     !! R at the start of the increment [-]
         real(wp), intent(in) :: ms      !! m times the slip, >= 0 [-]
         real(wp), intent(out) :: r, e   !! R at its end, and 1 - R [-]
-        real(wp) :: root
+        real(wp) :: root, unit
 
-        root = hypot(ms - r_n, 2.0_wp * sqrt(ms))
+        ! no hypot: glibc's vector function raises an overflow above the range of single precision
+        unit = max(ms, 1.0_wp)
+        root = unit * sqrt(((ms - r_n) / unit)**2 + 4.0_wp * (ms / unit) / unit)
         e = 2.0_wp * (1.0_wp - r_n) / ((1.0_wp - r_n) + (1.0_wp + ms) + root)
         r = 0.5_wp * ((r_n - ms) + root)
         if (ms > r_n) r = 2.0_wp * ms / max(abs(ms - r_n) + root, tiny(root))

@@ -12,21 +12,41 @@ typedef int update_batch(int64_t n, int ndir, const double *du, double dtime, in
                          int nstatv, double *statev, double *traction, double *tangent, int *status);
 typedef int update(int ndir, const double *du, double dtime, int nprops, const double *props, int nstatv,
                    double *statev, double *traction, double *tangent);
+typedef int tangential(int ndir, const double *du, double pressure, double dtime, int nprops, const double *props,
+                       int nstatv, double *statev, double *tau, double *dtau_ddu, double *dtau_dp);
+typedef int continuous(int ndir, const double *velocity, int nprops, const double *props, int nstatv,
+                       const double *statev, double *rates);
+typedef int slip_rates(int64_t n, const double *tau, const double *pressure, double damping, int nprops,
+                       const double *props, const double *internal, double *rate, double *internal_rate, int *status);
 
-enum { n = 1024, increments = 6, laws = 8, most_props = 14 };
-static double du[3 * n], statev[8 * n], traction[3 * n], tangent[9 * n];
+static update *one;
+static update_batch *batch, *batch_props, *batch_points;
+static tangential *given;
+static continuous *rates_of;
+static slip_rates *slip_rates_of;
+
+enum { n = 512, increments = 4, laws = 15, most_props = 16 };
+static double du[3 * n], statev[8 * n], traction[3 * n], tangent[9 * n], constants[most_props * n];
+static double numbers[2][n];
 static int status[n];
-/* Laws without and with a cap, two coefficients, cohesion, a damper. */
+/* Every law, some without and with a cap, two coefficients, cohesion, a damper. */
 static const double props[laws][most_props] = {
     {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3},
     {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 0, 0, 1.5},
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 0, 1},
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 0, 2},
+    {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 0, 2, 0, 0.6, 1, 0.4, 0.1},
     {1, 1000, 800, 0.45, 0.25, 8, 0.2, 60, 0.3, 1, 0, 0, 0.6, 1},
     {2, 1000, 800, 0.45, 1.5, 0.6, 1, 0.2, 3},
     {3, 1000, 800, 0.45, 0.25, 0.1, 1.5},
     {4, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 1, 0.1, 1.5},
+    {4, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 1, 1},
     {5, 1000, 800, 0.45, 0.25, 0.1, 1.5},
+    {6, 1000, 800, 0.45, 0.25, 0.1, 0.2},
+    {7, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 0.1, 1},
+    {8, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 0.1},
     {8, 1000, 800, 0.02, 0.015, 1e-2, 1e-2, 0.4, 0.1, 0, 0.1, 1.5}};
-static const int nprops[laws] = {9, 12, 14, 9, 7, 11, 7, 12};
+static const int nprops[laws] = {9, 12, 11, 11, 16, 14, 9, 7, 11, 10, 7, 7, 10, 9, 12};
 
 static int denormals_live(void)
 {
@@ -46,12 +66,12 @@ static double draw(void)
 }
 
 /* Pressed, lifted, moved far and not at all, and a few that are no numbers. */
-static void random_increment(void)
+static void random_increment(double decades)
 {
     int i;
 
     for (i = 0; i < n; i++) {
-        double size = pow(10, -6 * draw());
+        double size = pow(10, -6 + (6 + decades) * draw());
 
         du[i] = (draw() - 0.6) * 1e-2;
         du[n + i] = draw() < 0.1 ? 0 : (draw() - 0.5) * size;
@@ -61,39 +81,98 @@ static void random_increment(void)
     }
 }
 
-/* Exceptions that batches, or the same points one by one, raise under a law. */
-static int exceptions(update_batch *batch, update *one, int law, double dt)
+static int raised(void)
 {
-    const int serious = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW;
-    int raised = 0, k, i, j;
+    int flags = fetestexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
+
+    feclearexcept(FE_ALL_EXCEPT);
+    return flags;
+}
+
+/* The same points in the entries that take one. */
+static int one_by_one(int law, double dt)
+{
+    int flags = 0, i, j;
+
+    for (i = 0; i < n; i++) {
+        double s[8], d[3], t[3], c[9], q[2];
+        const double pressure = (draw() - 0.1) * 20;
+
+        for (j = 0; j < 3; j++)
+            d[j] = du[j * n + i];
+        for (j = 0; j < 8; j++)
+            s[j] = statev[j * n + i];
+        rates_of(3, d, nprops[law], props[law], 8, s, c);
+        flags |= raised();
+        given(2, d + 1, pressure, dt, nprops[law], props[law], 8, s, t, c, q);
+        flags |= raised();
+        for (j = 0; j < 8; j++)
+            s[j] = statev[j * n + i];
+        one(3, d, dt, nprops[law], props[law], 8, s, t, c);
+        flags |= raised();
+    }
+    return flags;
+}
+
+/* Points in C order, constants of each point, slip rates of those points. */
+static int by_points(int law, double dt)
+{
+    double d[3 * n], s[8 * n];
+    int flags, i, j;
+
+    for (i = 0; i < n; i++) {
+        for (j = 0; j < 3; j++)
+            d[3 * i + j] = du[j * n + i];
+        for (j = 0; j < 8; j++)
+            s[8 * i + j] = statev[j * n + i];
+        numbers[0][i] = fabs(du[n + i]) * 1e3;
+        numbers[1][i] = draw() < 0.1 ? 0 : draw() * 10;
+        for (j = 0; j < nprops[law]; j++)
+            constants[j * n + i] = props[law][j];
+    }
+    raised();
+    batch_points(n, 3, d, dt, nprops[law], props[law], 8, s, traction, tangent, status);
+    slip_rates_of(n, numbers[0], numbers[1], 1e-2, nprops[law], constants, statev + 5 * n, traction, tangent, status);
+    memcpy(s, statev, sizeof s);
+    batch_props(n, 3, du, dt, nprops[law], constants, 8, s, traction, tangent, status);
+    flags = raised();
+    return flags;
+}
+
+/* Exceptions that entries raise under a law: of batches; of points one by one, 16 bits higher. */
+static int exceptions(int law, double dt, double decades)
+{
+    int flags = 0, k;
 
     memset(statev, 0, sizeof statev);
     for (k = 0; k < increments; k++) {
-        random_increment();
-        feclearexcept(FE_ALL_EXCEPT);
+        random_increment(decades);
+        raised();
+        flags |= one_by_one(law, dt) << 16;
+        flags |= by_points(law, dt);
         batch(n, 3, du, dt, nprops[law], props[law], 8, statev, traction, tangent, status);
-        raised |= fetestexcept(serious);
-        feclearexcept(FE_ALL_EXCEPT);
-        for (i = 0; i < n; i++) {
-            double s[8], d[3], t[3], c[9];
-
-            for (j = 0; j < 8; j++)
-                s[j] = statev[j * n + i];
-            for (j = 0; j < 3; j++)
-                d[j] = du[j * n + i];
-            one(3, d, dt, nprops[law], props[law], 8, s, t, c);
-        }
-        raised |= fetestexcept(serious) << 16;
+        flags |= raised();
     }
-    return raised;
+    return flags;
+}
+
+/* Every entry of the library; 0 if one is missing. */
+static int find_entries(void *library)
+{
+    *(void **)&one = dlsym(library, "friction_update");
+    *(void **)&batch = dlsym(library, "friction_update_batch");
+    *(void **)&batch_props = dlsym(library, "friction_update_batch_props");
+    *(void **)&batch_points = dlsym(library, "friction_update_points");
+    *(void **)&given = dlsym(library, "friction_tangential");
+    *(void **)&rates_of = dlsym(library, "friction_rates");
+    *(void **)&slip_rates_of = dlsym(library, "friction_slip_rates");
+    return one && batch && batch_props && batch_points && given && rates_of && slip_rates_of;
 }
 
 int main(int argc, char **argv)
 {
     void *library;
-    update_batch *batch;
-    update *one;
-    int raised, law;
+    int flags, law;
 
     if (argc < 2 || !denormals_live())
         return 2;
@@ -106,15 +185,14 @@ int main(int argc, char **argv)
         fprintf(stderr, "loading the library flushes denormals to zero\n");
         return 1;
     }
-    *(void **)&batch = dlsym(library, "friction_update_batch");
-    *(void **)&one = dlsym(library, "friction_update");
-    if (!batch || !one)
+    if (!find_entries(library))
         return 2;
     for (law = 0; law < laws; law++) {
-        raised = exceptions(batch, one, law, 0.1) | exceptions(batch, one, law, 1e-310);
-        if (raised) {
-            fprintf(stderr, "constants %d: floating-point exceptions are raised: batch %x, one point %x\n", law,
-                    raised & 0xffff, raised >> 16);
+        flags = exceptions(law, 0.1, 0) | exceptions(law, 0.1, 18) | exceptions(law, 0.1, 90)
+                | exceptions(law, 1e-13, 18) | exceptions(law, 1e-310, 0);
+        if (flags) {
+            fprintf(stderr, "constants %d: floating-point exceptions are raised: batches %x, one point %x\n", law,
+                    flags & 0xffff, flags >> 16);
             return 1;
         }
     }
