@@ -203,25 +203,41 @@ contains
         end associate
     end subroutine pass_speed
 
-    !> Ends a step where its phase does, if it has ended. The error of a shorter step can be larger:
-    !> then it is not taken.
+    !> Ends a step where its phase does, if it has ended. What has ended and come back before that is
+    !> looked for in the step that is left.
     subroutine locate(self, t, tried)
         class(block_integrator), intent(inout) :: self
         real(dp), intent(in) :: t                 !! [T]
         type(trial), intent(inout) :: tried
+        real(dp) :: g(switches)
+
+        call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
+        if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
+        if (all(g <= 0.0_dp)) call look_between(self, t, tried, g)
+        if (all(g <= 0.0_dp)) return
+        call end_with_phase(self, t, tried, g)
+        if (tried%switch == 0) return
+        call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
+        call look_between(self, t, tried, g)
+        if (tried%switch == 0 .and. tried%error <= 1.0_dp) call end_with_phase(self, t, tried, g)
+    end subroutine locate
+
+    !> Ends a step where the first of the phases that have ended at its end does. The error of a
+    !> shorter step can be larger: then it is not taken.
+    subroutine end_with_phase(self, t, tried, g)
+        class(block_integrator), intent(inout) :: self
+        real(dp), intent(in) :: t                 !! [T]
+        type(trial), intent(inout) :: tried
+        real(dp), intent(inout) :: g(switches)    !! at its end
         integer, parameter :: most_tries = 40
         real(dp), parameter :: close = 1.0e-12_dp
         real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
         real(dp), parameter :: late = 0.03_dp     !! part of a swing's speed
         type(trial) :: again
         type(root_bracket) :: bracket
-        real(dp) :: g(switches), before(switches), middle, share, enough
+        real(dp) :: before(switches), middle, share, enough
         integer :: i, which
 
-        call switch_values(self%block%equations, t + tried%h, tried%y, tried%last, g)
-        if (self%block%y(memory) >= self%block%equations%surface%traits%kink) g(3) = -1.0_dp
-        if (all(g <= 0.0_dp)) call look_between(self, t, tried, g)
-        if (all(g <= 0.0_dp)) return
         which = 0
         share = 2.0_dp
         do i = 1, switches
@@ -264,7 +280,7 @@ contains
         end do
         if (g(which) <= 0.0_dp) call pass(self, t, which, bracket%high, tried)
         tried%switch = which
-    end subroutine locate
+    end subroutine end_with_phase
 
     !> A phase may end within a step and come back before its end: a traction that just passes the
     !> strength in a swing, a sliding block that just turns, one that just leaves the base. Then the
@@ -316,6 +332,7 @@ contains
         if (again%error <= 1.0_dp) then
             call switch_values(self%block%equations, t + again%h, again%y, again%last, at(:, 0))
             if (.not. at(which, 0) > 0.0_dp) return
+            g = min(g, at(:, 0))
             g(which) = at(which, 0)
         end if
         tried = again

@@ -455,7 +455,8 @@ contains
     !> Velocity or traction of a contact that creeps. Of a rigid one each tells the other: the
     !> traction is the unknown, unless its tolerated error leaves the velocity open by many times
     !> its own. Of a surface that carries next to nothing the traction tells no velocity at all, nor
-    !> does that of a contact spring, which is left out if it is much less than its tolerated error.
+    !> does that of a contact spring, which is left out if it is much less than its tolerated error;
+    !> not while it unloads by itself, for then it is what the surface slides by.
     subroutine choose_unknown(self, t)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t   !! [T]
@@ -469,6 +470,8 @@ contains
                 abs(block%y(velocity)), pressure, resistance, by_rate)
             by_velocity = many * by_rate * self%weights(elastic) < self%weights(velocity) &
                 * eq%alpha
+            if (.not. eq%rigid) by_velocity = by_velocity .and. abs(sign(resistance, &
+                block%y(velocity)) / eq%alpha - block%y(elastic)) * self%weights(elastic) <= 1.0_dp
             if (by_velocity .eqv. eq%by_velocity) return
             eq%by_velocity = by_velocity
             block%known = .false.
