@@ -14,7 +14,7 @@ module checkpoint
 
     public :: checkpoint_writer, read_checkpoint
 
-    integer(int64), parameter :: version = int(z'737469636B73000E', int64)   !! "sticks", and 14
+    integer(int64), parameter :: version = int(z'737469636B73000F', int64)   !! "sticks", and 15
 
     type, extends(observer) :: checkpoint_writer
         character(len=:), allocatable :: name

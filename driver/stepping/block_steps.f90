@@ -203,8 +203,8 @@ contains
         end associate
     end subroutine pass_speed
 
-    !> Ends a step where its phase does, if it has ended. What has ended and come back before that is
-    !> looked for in the step that is left.
+    !> Ends a step where its phase does, if it has ended. What has ended and come back before that
+    !> is looked for in the step that is left.
     subroutine locate(self, t, tried)
         class(block_integrator), intent(inout) :: self
         real(dp), intent(in) :: t                 !! [T]

@@ -1,5 +1,5 @@
-!> A chain of blocks in continuous time, under laws without a yield point and a normal traction that
-!> does not change: the rate equations of each block, and the springs between neighbours.
+!> A chain of blocks in continuous time, under laws without a yield point: the rate equations of
+!> each block, and the springs between neighbours.
 module chain_rates
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use loading_programme, only : programme
@@ -27,14 +27,22 @@ contains
     subroutine enter(self, piece)
         class(chain_equations), intent(inout) :: self
         integer, intent(in) :: piece
+        real(dp) :: load   !! of a block
         integer :: i
 
         self%piece = piece
+        load = 1.0_dp
         do i = 1, size(self%blocks)
+            if (allocated(self%system%load)) load = self%system%load(i)
             associate (own => self%blocks(i)%drive, all => self%drive)
                 own%start = [all%start(piece)]
                 own%velocity = [all%velocity(piece)]
                 own%acceleration = [all%acceleration(piece)]
+                own%normal = [load * all%normal(piece)]
+                own%normal_rate = [load * all%normal_rate(piece)]
+                own%amplitude = load * all%amplitude
+                own%frequency = all%frequency
+                own%phase = all%phase
             end associate
             call self%blocks(i)%enter(1)
         end do

@@ -29,10 +29,13 @@ module continuous_steps
 
     !> Part of the time that is lost in round-off, but for the steps that it takes to follow a decay
     !> which has gone on for as long.
-    real(dp), parameter :: lost = 256.0_dp * shortest
+    real(dp), parameter, public :: lost = 256.0_dp * shortest
     !> Part of it that a step takes which follows what happens at once.
     real(dp), parameter :: at_once = 1.0e3_dp * shortest
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
+    !> What counts for slip that goes with an exponential is traction over pressure: its tolerated
+    !> error, part of friction.
+    real(dp), parameter, public :: tight = 1.0e-4_dp
 
     type, extends(block_integrator) :: continuous
         real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
@@ -418,7 +421,6 @@ contains
     subroutine set_weights(self, t)
         class(continuous), intent(inout) :: self
         real(dp), intent(in) :: t   !! [T]
-        real(dp), parameter :: tight = 1.0e-4_dp   !! of traction over pressure, part of friction
         real(dp) :: v_drive, pressure, pressure_rate
 
         call set_growing_weights(self%block%equations%acting, self%rtol, self%natural, &
@@ -441,7 +443,6 @@ contains
         pressure = max(pressure, self%block%equations%open_below, &
             self%block%equations%least_pressure)
         if (self%block%equations%surface%traits%stiff) then
-            ! what counts for slip that goes with an exponential is traction over pressure
             self%pressed = min(1.0_dp, pressure / self%largest)
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
                 * self%pressed))

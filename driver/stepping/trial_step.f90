@@ -9,11 +9,12 @@ module trial_step
     implicit none
     private
 
-    public :: look_at, trial
+    public :: look_at, trial, wild
 
     !> Tolerated errors of its velocity by which the traction of a rigid contact that creeps may
     !> leave it open.
     real(dp), parameter, public :: most_open = 10.0_dp
+    real(dp), parameter, public :: wild_error = 2.0_dp**4   !! of a step that is to be halved
 
     type :: trial
         real(dp) :: h                !! [T]
@@ -43,7 +44,8 @@ contains
             if (eq%creeps_along() .and. eq%by_velocity) tried%y(elastic) = eq%traction(t &
                 + tried%h, tried%y) / eq%alpha
         end associate
-        if (wild(block, weights(elastic), tried)) tried%error = max(tried%error, 2.0_dp**4)
+        if (wild(block%equations, block%y, tried%y, weights(elastic))) tried%error &
+            = max(tried%error, wild_error)
         if (.not. block%equations%mass > 0.0_dp) then
             call damp(block, t, tried)
         else if (tried%stiffness > long) then
@@ -125,27 +127,25 @@ contains
 
     !> Have the stages of a step been far from where it starts and ends? Then what slip dissipates
     !> over the slip is no traction of these.
-    pure function wild(block, weight, tried)
-        type(moving_block), intent(in) :: block
+    pure function wild(eq, before, after, weight)
+        type(slider_equations), intent(in) :: eq
+        real(dp), intent(in) :: before(unknowns), after(unknowns)   !! start and end of the step
         real(dp), intent(in) :: weight   !! inverse of the tolerated error of the contact's spring
-        type(trial), intent(in) :: tried
         logical :: wild
         real(dp), parameter :: far = 1.5_dp, round_off = 16.0_dp * epsilon(1.0_dp)
         real(dp) :: tractions(2), way, work, lost, least
 
-        associate (eq => block%equations, before => block%y, after => tried%y)
-            way = after(slip) - before(slip)
-            work = after(dissipated) - before(dissipated)
-            tractions = eq%alpha * abs([before(elastic), after(elastic)])
-            wild = .false.
-            if (eq%damper > 0.0_dp .or. .not. maxval(tractions) > 0.0_dp) return
-            lost = round_off * after(dissipated)
-            wild = abs(work) - lost > far * maxval(tractions) * max(way, 1.0_dp / weight, &
-                round_off * after(slip))
-            if (way * weight <= 1.0_dp .or. way <= round_off * after(slip)) return
-            least = minval(tractions) * (way - round_off * after(slip))
-            wild = wild .or. far * (work + lost) < least
-        end associate
+        way = after(slip) - before(slip)
+        work = after(dissipated) - before(dissipated)
+        tractions = eq%alpha * abs([before(elastic), after(elastic)])
+        wild = .false.
+        if (eq%damper > 0.0_dp .or. .not. maxval(tractions) > 0.0_dp) return
+        lost = round_off * after(dissipated)
+        wild = abs(work) - lost > far * maxval(tractions) * max(way, 1.0_dp / weight, &
+            round_off * after(slip))
+        if (way * weight <= 1.0_dp .or. way <= round_off * after(slip)) return
+        least = minval(tractions) * (way - round_off * after(slip))
+        wild = wild .or. far * (work + lost) < least
     end function wild
 
     !> In a step far longer than the block swings its slip rate is a small difference of large ones:
