@@ -90,10 +90,11 @@ class Damper(Program):
             self.assertAlmostEqual(rows[-1][1], 3.9, delta=1e-6)
 
     def test_slow_slip_under_a_load_that_varies_dissipates_what_the_drive_gives(self):
-        # in steps far longer than the block swings: 667 was dissipated of 3.4, or 7.5
-        for damper in (0, 0.1, 10):
+        # in steps far longer than the block swings: 667 was dissipated of 3.4, or 7.5; on blocks that move across, too, 4.396 of 4.415
+        across = ', normal_mass=0.1, normal_stiffness=1, normal_damping=0.1, tilt_stiffness='
+        for damper, across in ((0, ''), (0.1, ''), (10, ''), (0.1, across + '-0.5'), (10, across + '-0.5'), (10, across + '0.5')):
             result = self.run_text(f"""&friction {SLIDING['coulomb']}, alpha_n=1000, alpha_t=100, eta_t={damper} /
-                &slider mass=0.1, stiffness=1, damping=0.1, normal_traction=1 /
+                &slider mass=0.1, stiffness=1, damping=0.1, normal_traction=1 {across} /
                 &drive velocity=3e-8, normal_amplitude=0.4, normal_frequency=2e-8 /
                 &time t_end=2.5e8, rtol=1e-5 /""", '--no-plot')
             self.assertEqual((result.returncode, result.stderr), (0, ''))
