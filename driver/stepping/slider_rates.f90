@@ -275,6 +275,10 @@ contains
         logical, intent(out) :: failed
         type(load_rates) :: load
         type(law_state) :: state, changes
+        !> R of a surface that slides fully is 1 but for the error of a step. Cut at 1 rates would
+        !> have a kink there, where a surface slides whose strength falls, and derivatives on either
+        !> side of it would not fit together. Stages of a step to be refused may be anywhere.
+        real(dp), parameter :: just_beyond = 1.01_dp
         real(dp) :: sense
         logical :: in_series
 
@@ -303,8 +307,8 @@ contains
         load%sliding = self%surface%traits%onset /= onset_gradual
         state = law_state_of(self, y, pressure)
         if (self%phase == phase_slide) then
-            if (self%surface%traits%memory == 1 .and. state%r >= 1.0_dp) state%r = beyond_full(&
-                self, y, pressure)
+            if (self%surface%traits%memory == 1 .and. state%r >= 1.0_dp) state%r = carried_share( &
+                self%alpha * abs(y(elastic)), full_strength(self, y, pressure), just_beyond)
             call self%surface%slip_rate(state, load, contact%slip, failed)
         else if (self%phase == phase_capped) then
             contact%slip = load%loading / load%stiffness
@@ -323,18 +327,15 @@ contains
         call take_memory(self, changes, state, contact)
     end subroutine elastic_contact
 
-    !> R of a surface that slides fully: the traction's share, 1 but for the error of a step. Were
-    !> it cut at 1, rates would have a kink there, where a surface slides whose strength falls, and
-    !> derivatives on either side of it would not fit together.
-    pure function beyond_full(self, y, pressure) result(share)
-        class(slider_equations), intent(in) :: self
-        real(dp), intent(in) :: y(controlled)
-        real(dp), intent(in) :: pressure
+    !> The traction's part of what a subloading surface carries when it slides fully.
+    pure function carried_share(traction, full, most) result(share)
+        real(dp), intent(in) :: traction, full   !! [F/L^2]
+        real(dp), intent(in) :: most
         real(dp) :: share
-        real(dp), parameter :: most = 1.01_dp   !! a stage of a step that is going to be refused
 
-        share = min(most, self%alpha * abs(y(elastic)) / full_strength(self, y, pressure))
-    end function beyond_full
+        share = 0.0_dp
+        if (full > 0.0_dp) share = min(most, traction / full)
+    end function carried_share
 
     !> The same of a surface with phases of rest, most steps of which are short: without what such a
     !> block does not have.
@@ -365,12 +366,11 @@ contains
         real(dp), intent(in) :: sense   !! of the slip in x
         real(dp), intent(out) :: rate   !! [L/T]
         logical, intent(out) :: jumps
-        real(dp) :: carried, full, share
+        real(dp) :: carried, share
 
         carried = self%alpha * abs(y(elastic))
-        full = y(memory) * self%constant_pressure + self%surface%law%cohesion
-        share = 0.0_dp
-        if (full > 0.0_dp) share = min(1.0_dp, carried / full)
+        share = carried_share(carried, y(memory) * self%constant_pressure &
+            + self%surface%law%cohesion, 1.0_dp)
         call self%surface%law%slip_rate(law_state(mu=y(memory), r=share), load_rates(carried, &
             sense * self%alpha * y(velocity), self%alpha, self%constant_pressure, 0.0_dp, .true.), &
             rate, jumps)
@@ -759,23 +759,22 @@ contains
         real(dp), intent(in) :: pressure   !! [F/L^2]
         type(law_state) :: state
         type(damper_balance) :: balance
-        real(dp) :: full, carried
+        real(dp) :: carried
 
         state = law_state(mu=0.0_dp, r=0.0_dp)
         select case (self%surface%traits%memory)
         case (1)
             state%mu = y(memory)
-            full = full_strength(self, y, pressure)
             if (self%phase == phase_capped .or. self%damper > 0.0_dp .and. self%phase &
                 /= phase_stick) then
                 state%r = min(1.0_dp, max(y(ratio), 0.0_dp))
-            else if (full > 0.0_dp) then
+            else
                 carried = self%alpha * abs(y(elastic))
                 if (self%damper > 0.0_dp) then
                     balance = balance_at(self, y, self%pull(y))
                     carried = balance%push
                 end if
-                state%r = min(1.0_dp, carried / full)
+                state%r = carried_share(carried, full_strength(self, y, pressure), 1.0_dp)
             end if
         case (2)
             state%r = y(memory)
