@@ -1,7 +1,7 @@
 !> Adaptive steps of a chain in continuous time by Rodas4, under rate-and-state friction and its
 !> relatives: what the law remembers changes so fast in slip that methods of low order take most of
-!> their steps for it. Without a normal traction that vanishes, so that the contacts of all blocks
-!> slide from first to last, if only by a little, or as a shear cap says.
+!> their steps for it. The contacts of all blocks open and close together; between, they slide from
+!> first to last, if only by a little, or as a shear cap says.
 module continuous_chain
     use, intrinsic :: iso_fortran_env, only : dp => real64
     use abstract_integrator, only : step_report
@@ -13,13 +13,14 @@ module continuous_chain
     use friction_mod, only : friction_bad_state, friction_facts, friction_no_convergence, &
         friction_no_rate, law_facts, statev_u_n
     use phase_changes, only : change_phase, first_root, root_bracket, switch_values, switches
+    use law_facts, only : cohesion_of_each
     use rosenbrock, only : chain_stepper
     use run_settings, only : settings
     use slider_rates, only : along, controlled, damped, drive_work, elastic, memory, &
-        most_logarithm, phase_slide, unknowns
+        most_logarithm, phase_open, phase_slide, unknowns
     use slider_system, only : ends_periodic, slider, slider_state
-    use step_ends, only : end_of_step, vanishing_part
-    use sudden_changes, only : creep_at_once, press
+    use step_ends, only : end_of_step, find_opening, vanishing_part
+    use sudden_changes, only : creep_at_once, open_or_touch, press
     use trial_step, only : wild, wild_error
     implicit none
     private
@@ -35,8 +36,8 @@ module continuous_chain
         logical :: capped = .false.                 !! tractions of blocks, where they reach a cap
     contains
         procedure :: prepare, step, visit
-        procedure, private :: load_at_once, settle_all, set_all_weights, try, end_at_cap, &
-            find_first, part, put_back, finish, jumps
+        procedure, private :: take_normal, open_below, settle_all, set_all_weights, try, &
+            end_at_cap, find_first, part, put_back, finish, jumps
     end type continuous_blocks
 
 contains
@@ -48,8 +49,12 @@ contains
         type(law_facts) :: law
 
         law = friction_facts(run%props)
-        yes = law%traits%stiff .and. .not. run%newmark .and. minval(run%drive%normal) &
-            - run%drive%amplitude > run%drive%largest_normal() * vanishing_part(.true., run%rtol)
+        yes = law%traits%stiff .and. .not. run%newmark
+        if (.not. yes .or. minval(run%drive%normal) - run%drive%amplitude &
+            > run%drive%largest_normal() * vanishing_part(.true., run%rtol)) return
+        yes = .not. law%cohesion > 0.0_dp
+        if (allocated(run%chain%constants)) yes = .not. any(cohesion_of_each( &
+            run%chain%constants) > 0.0_dp)
     end function chain_in_continuous_time
 
     subroutine prepare(self, run, system, start)
@@ -100,7 +105,7 @@ contains
         type(slider_state), intent(inout) :: old
         type(slider_state), intent(inout) :: new
         type(step_report), intent(out) :: report
-        real(dp) :: end, wanted, h, error, error_in_whole
+        real(dp) :: end, wanted, h, error, error_in_whole, before, opening
         integer :: piece
         logical :: failed, again
 
@@ -108,8 +113,8 @@ contains
         if (piece /= self%chain%piece) then
             call self%chain%enter(piece)
             self%block%known = .false.
-            call self%load_at_once(old)
         end if
+        if (self%reloaded) call self%take_normal(old)
         call self%take_limit(old%time)
         if (self%capped) call self%settle_all(old%time)
         if (.not. self%block%known) call self%chain%rates(old%time, self%now, self%now_rates, &
@@ -119,6 +124,11 @@ contains
         do
             wanted = min(self%dt, self%dt_max)
             end = end_of_step(old%time, wanted, self%limit)
+            if (self%reloaded) then
+                call find_opening(self%drive, piece, self%open_below(), self%chain%blocks(1)%phase &
+                    == phase_open, old%time, end, before, opening)
+                end = min(end, opening)
+            end if
             h = end - old%time
             call self%try(old%time, end, error)
             error_in_whole = error
@@ -136,28 +146,45 @@ contains
         call self%finish(end, old, new)
     end subroutine step
 
-    !> A normal traction that jumps as a piece of the programme begins.
-    subroutine load_at_once(self, old)
+    !> Takes the blocks to the normal traction that holds from now on: it may have jumped, all
+    !> contacts may open or close.
+    subroutine take_normal(self, old)
         class(continuous_blocks), intent(inout) :: self
         type(slider_state), intent(inout) :: old
         type(moving_block) :: block
-        real(dp) :: normal
+        real(dp) :: normal, after
+        logical :: closed, was_closed
         integer :: i
 
         normal = self%drive%normal_traction(old%time, self%chain%piece)
-        if (abs(normal - old%normal) <= 1.0e-14_dp * normal) return
+        closed = normal > self%open_below()
+        was_closed = self%chain%blocks(1)%phase /= phase_open
+        if (closed .eqv. was_closed) then
+            if (.not. closed .or. abs(normal - old%normal) <= 1.0e-14_dp * normal) return
+        end if
         do i = 1, size(self%now, 2)
             call self%part(i, block)
-            associate (after => block%equations%drive%normal_traction(old%time, 1))
+            after = block%equations%drive%normal_traction(old%time, 1)
+            block%equations%phase = merge(phase_slide, phase_open, closed)
+            if (closed .and. was_closed) then
                 call press(block, after * old%normal / normal, after, lost * old%time)
-            end associate
-            block%equations%phase = phase_slide
-            call creep_at_once(block, old%time, lost * old%time)
+                call creep_at_once(block, old%time, lost * old%time)
+            else
+                call open_or_touch(block, after, .false.)
+            end if
             call self%put_back(i, block)
         end do
         old%normal = normal
         old%load = normal
-    end subroutine load_at_once
+    end subroutine take_normal
+
+    !> Normal traction that counts as none in the piece: one that does not vary is taken as it is.
+    pure real(dp) function open_below(self)
+        class(continuous_blocks), intent(in) :: self
+
+        open_below = self%block%equations%open_below
+        if (self%chain%blocks(1)%steady) open_below = min(0.0_dp, open_below)
+    end function open_below
 
     !> One block by itself.
     subroutine part(self, i, block)
@@ -217,7 +244,7 @@ contains
         integer :: i
 
         if (self%reloaded) then
-            pressed = min(1.0_dp, normal / self%largest)
+            pressed = min(1.0_dp, max(normal, self%block%equations%open_below) / self%largest)
             self%rodas%natural(elastic, :) = self%elastic_sizes * pressed
             self%rodas%weights(elastic, :) = 1.0_dp / (self%elastic_sizes * min(self%rtol, tight &
                 * pressed))

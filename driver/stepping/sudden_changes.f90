@@ -13,7 +13,7 @@ module sudden_changes
     implicit none
     private
 
-    public :: creep_at_once, press, stopped, take_load, take_off_spring
+    public :: creep_at_once, open_or_touch, press, stopped, take_load, take_off_spring
 
 contains
 

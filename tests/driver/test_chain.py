@@ -235,7 +235,8 @@ class Motion(Chain):
 
     def test_creeping_blocks_resume_to_the_same_bytes(self):
         """Stopped where the load varies, where blocks slide at a cap."""
-        for law, drive in ((self.LINKER_DIETERICH, self.STEPS), (self.LINKER_DIETERICH + ' tau_max=0.58', self.SINE)):
+        for law, drive in ((self.LINKER_DIETERICH, self.STEPS), (self.LINKER_DIETERICH + ' tau_max=0.58', self.SINE),
+                           (self.RATE_AND_STATE, "normal=1 0 0.9 normal_change='ramp'")):
             text, result = self.between_walls(law, drive, output='interval=1')
             self.assert_done(result)
             names = ('case.csv', 'case_events.csv')
@@ -266,6 +267,18 @@ class Motion(Chain):
             for found, expected in ((rows[12]['displacement'], at_12), (rows[12]['friction_force'], friction), (rows[30]['displacement'], at_30),
                                     (re.search(r'dissipated +(\S+)', result.stdout)[1], dissipated)):
                 self.assertAlmostEqual(float(found), expected, delta=1e-6 * expected)
+
+    def test_creeping_blocks_without_springs_between_them_open_and_close_as_one_does(self):
+        for law, drive in ((self.RATE_AND_STATE, 'normal_amplitude=1.3 normal_frequency=0.17'),
+                           (self.LINKER_DIETERICH + ' tau_max=0.58', "normal=1 0 0.9 normal_change='ramp'")):
+            text, _ = self.between_walls(law, drive)
+            ends = []
+            for blocks in (1, 3):
+                self.assert_done(self.run_text(re.sub('&chain .*/', f'&chain n_blocks={blocks} coupling=0 /', text), '--no-plot'))
+                rows = self.rows('case_out/case.csv')
+                ends.append([float(rows[-1][column]) for column in ('displacement', 'friction_force', 'slip')])
+            for one, three in zip(*ends, strict=True):
+                self.assertAlmostEqual(three, one, delta=1e-5 * abs(one))   # 4e-5 to 0.02 in Newmark's steps
 
     def test_a_sudden_load_slips_creeping_blocks_in_no_time(self):
         # friction after it: the slip rate times exp(37), which no step is short enough for

@@ -254,10 +254,11 @@ class Phases(Program):
                     &drive velocity=0.1, {load} /
                     &time t_end=10, rtol=1e-6 / """
                 one = self.table(text)
-                two = self.table(text + '&chain n_blocks=2, coupling=5 /', 'counts as open too early' * ('alpha=0.4' in law))
-                self.assertAlmostEqual(two[0][-1]['displacement'], one[0][-1]['displacement'], delta=3e-3 * one[0][-1]['displacement'])
+                two = self.table(text + '&chain n_blocks=2, coupling=5 /')
+                part = 1e-3 if rate_state in law else 1   # these go in continuous time, too
+                self.assertAlmostEqual(two[0][-1]['displacement'], one[0][-1]['displacement'], delta=part * 3e-3 * one[0][-1]['displacement'])
                 for energy in ('drive', 'dissipated'):
-                    self.assertAlmostEqual(two[1][energy], 2 * one[1][energy], delta=1.5e-3 * two[1]['drive'])
+                    self.assertAlmostEqual(two[1][energy], 2 * one[1][energy], delta=part * 1.5e-3 * two[1]['drive'])
 
     def test_a_state_that_a_vanishing_normal_traction_takes_out_of_range_is_refused_in_chains(self):
         text = """&friction law='linker_dieterich', a=0.01, b=0.01, d_c=0.01, v0=0.001, f0=0.6, alpha=0.281, alpha_n=1000, alpha_t=1000 /
