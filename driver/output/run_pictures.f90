@@ -132,7 +132,8 @@ contains
         end if
     end subroutine draw_sweep
 
-    !> Labels of the places of the values; of many values every so many, so that they can be read.
+    !> Labels of the places of the values, in six digits; of many values every so many, so that they
+    !> can be read.
     pure function tics(values) result(text)
         real(dp), intent(in) :: values(:)
         character(len=:), allocatable :: text
@@ -142,7 +143,7 @@ contains
         text = ''
         do i = 1, size(values), 1 + (size(values) - 1) / most
             if (i > 1) text = text // ', '
-            text = text // '"' // short_text(values(i)) // '" ' // whole_text(i - 1)
+            text = text // 'sprintf("%g", ' // short_text(values(i)) // ') ' // whole_text(i - 1)
         end do
     end function tics
 

@@ -20,14 +20,14 @@ set xrange [-0.5:right_cells - 0.5]
 set yrange [-0.5:up_cells - 0.5]
 eval "set xtics out nomirror rotate (".tics_1.")"
 eval "set ytics out nomirror (".tics_2.")"
-set bmargin 11   # four lines of the key, below the name of the axis
+set bmargin 14   # labels, the name of the axis, and four lines of the key
 set tmargin 4
-set lmargin 12
+set lmargin 16
 set rmargin 14
 set palette defined (0 "#fde725", 1 "#21918c", 2 "#440154")
 if (!exists("ending")) { ending = "png" }
-set terminal pngcairo size 1800,650 font "Sans,12"
-if (ending eq "svg") { set terminal svg size 1800,650 font "Sans,12" background "white" }
+set terminal pngcairo size 1800,720 font "Sans,12"
+if (ending eq "svg") { set terminal svg size 1800,720 font "Sans,12" background "white" }
 set output stem.".".ending
 set multiplot layout 1,3 title stem noenhanced
 set xlabel key_1 noenhanced
