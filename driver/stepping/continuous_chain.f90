@@ -297,14 +297,19 @@ contains
         real(dp), intent(inout) :: error   !! part of the tolerated one
         integer, parameter :: most_tries = 60
         real(dp), parameter :: close = 1.0e-12_dp
+        real(dp), parameter :: unseen = 0.02_dp   !! part of the tolerated error
+        integer, parameter :: traction = 2        !! what compares it with the cap
         type(root_bracket) :: bracket
-        real(dp) :: h, next, nudge, g(switches)
+        real(dp) :: h, next, nudge, enough, g(switches)
         integer :: i, block, which
 
         call self%find_first(t, end - t, next, block, which, g)
         if (block == 0) return
+        enough = 0.0_dp
+        if (which == traction) enough = unseen * self%chain%blocks(block)%alpha &
+            / self%rodas%weights(elastic, block)
         bracket%high = end - t
-        bracket%g_high = g(which)
+        bracket%g_high = g(which) - 0.5_dp * enough
         bracket%g_low = -g(which)
         nudge = max(close * bracket%high, shortest * t)
         do i = 1, most_tries
@@ -315,7 +320,8 @@ contains
             if (error > 1.0_dp) return
             call switch_values(self%chain%blocks(block), end, self%then(:controlled, block), &
                 self%then_rates(:, block), g)
-            call bracket%take(h, g(which))
+            if (g(which) > 0.0_dp .and. g(which) <= enough) return
+            call bracket%take(h, g(which) - 0.5_dp * enough)
             next = bracket%guess()
             if (abs(next - h) > nudge) cycle
             if (g(which) > 0.0_dp) return
