@@ -87,6 +87,7 @@ contains
         call get_text(script, lines)
         call file%create(directory // '/' // stem // '.gp')
         call file%write_line('# gnuplot ' // stem // '.gp')
+        call file%write_line('reset')   ! the script loads itself again, for the SVG
         call file%write_line(self%text)
         do i = 1, size(lines)
             call file%write_line(trim(lines(i)))

@@ -1,5 +1,4 @@
 # What differs from block to block of a chain, a panel each.
-reset
 set datafile separator ","
 stats file using 1 every ::1 nooutput
 set xrange [0.5:STATS_max + 0.5]

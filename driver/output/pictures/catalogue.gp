@@ -1,5 +1,4 @@
 # The events of a chain's blocks: how many have a magnitude or more, and the b-value.
-reset
 set datafile separator ","
 # magnitude as in seismology, without the constant that depends on units: two thirds of log10 of the moment
 magnitude(ended, moment) = ended > 0 && moment > 0 ? log10(moment)/1.5 : NaN

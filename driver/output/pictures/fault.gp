@@ -1,5 +1,4 @@
 # A fault: its largest slip rate in time, the slip rate in depth, and contours of slip.
-reset
 set datafile separator ","
 if (!exists("ending")) { ending = "png" }
 panels = strlen(contours[1:1]) > 0 && contours[1:1] ne " " ? 3 : 1

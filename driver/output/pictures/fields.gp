@@ -1,5 +1,4 @@
 # Slip rate of a chain's blocks in space and time, the largest of each cell.
-reset
 set datafile separator whitespace
 set view map
 # a cell has the value with which it begins

@@ -1,6 +1,5 @@
 # Where steady sliding is stable, over two keys on logarithmic axes: blue where small disturbances
 # die away; elsewhere the colour is the frequency at which they grow, grey where they do not swing.
-reset
 set datafile separator ","
 set datafile columnheaders
 is(name) = stringcolumn("stability") eq name

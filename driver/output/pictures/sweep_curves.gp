@@ -1,5 +1,4 @@
 # A sweep over one key: period and stress drop. Combinations that have none show at the bottom.
-reset
 set datafile separator ","
 set datafile columnheaders
 regime(name) = stringcolumn("regime") eq name

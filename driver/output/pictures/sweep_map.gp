@@ -1,6 +1,5 @@
 # A sweep over two keys: regime, period and stress drop in cells, the first key to the right, the
 # second one up. Cells without period and drop stay white.
-reset
 set datafile separator ","
 set datafile columnheaders
 # before the ranges, beyond which stats sees nothing
