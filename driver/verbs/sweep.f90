@@ -65,7 +65,7 @@ contains
         if (wanted%parts == 1) call remove_results(wanted%output // '/' // wanted%stem, of_sweep)
         mine = is_mine(wanted, size(rows))
         found = count_rows(pack(rows, mine))
-        call run_all(plan, wanted, mine, done, rows, problem)
+        call run_all(plan, wanted, mine, found, done, rows, problem)
         if (len(problem) == 0 .and. wanted%parts == 1) call write_table(base, plan, rows, problem)
         if (done%file%failed) problem = 'cannot write ' // journal_name(wanted, base) &
             // ' (disk full?)'
@@ -147,39 +147,35 @@ contains
         type(line_text), allocatable, intent(out) :: rows(:)  !! one a combination, empty if not run
         character(len=:), allocatable, intent(out) :: problem
         type(line_text), allocatable :: known(:)
+        type(line_text) :: starts(size(plan%runs))   ! of the rows
         character(len=:), allocatable :: input
         integer :: i
 
         allocate (rows(size(plan%runs)))
         do i = 1, size(rows)
             rows(i)%text = ''
+            starts(i)%text = point_text(plan%point(i))
         end do
         input = 'stickslip ' // friction_version // new_line('a') // table_header(plan%axes) &
             // new_line('a') // plan%input
         call read_rows(base // '.journal', input, known, problem)
         if (len(problem) > 0) return
-        call take_rows(plan, known, rows)
+        call take_rows(starts, known, rows)
         do i = 1, size(rows)   ! parts of a higher number have no combination
             call read_rows(part_journal(base, i), input, known, problem)
             if (len(problem) > 0) return
-            call take_rows(plan, known, rows)
+            call take_rows(starts, known, rows)
         end do
         call done%open(journal_name(wanted, base), input, known, problem)
     end subroutine open_journal
 
     !> Rows are about in the order of the combinations: the next one is looked for behind the last.
-    subroutine take_rows(plan, known, rows)
-        type(sweep_plan), intent(in) :: plan
+    subroutine take_rows(starts, known, rows)
+        type(line_text), intent(in) :: starts(:)       !! which tell the combinations
         type(line_text), intent(in) :: known(:)
         type(line_text), intent(inout) :: rows(:)
-        type(line_text), allocatable :: starts(:)
         integer :: i, j, tried
 
-        if (size(known) == 0) return
-        allocate (starts(size(rows)))
-        do i = 1, size(rows)
-            starts(i)%text = point_text(plan%point(i))
-        end do
         i = 0
         do j = 1, size(known)
             associate (row => known(j)%text)
@@ -195,10 +191,11 @@ contains
     !> Runs the combinations that have no row, each in a process of its own. A row does not depend
     !> on what runs beside it. Rows of runs that crashed stay out of the journal: they are tried
     !> again.
-    subroutine run_all(plan, wanted, mine, done, rows, problem)
+    subroutine run_all(plan, wanted, mine, found, done, rows, problem)
         type(sweep_plan), intent(in) :: plan
         type(command), intent(in) :: wanted
         logical, intent(in) :: mine(:)            !! the combinations to run
+        integer, intent(in) :: found              !! of these, rows that are there
         type(journal), intent(inout) :: done
         type(line_text), intent(inout) :: rows(:)
         character(len=:), allocatable, intent(out) :: problem
@@ -212,7 +209,7 @@ contains
         if (wanted%jobs == 0) i = cores()
         allocate (children(i), combination(i))
         next = 1
-        finished = count_rows(pack(rows, mine))
+        finished = found
         call bar%begin(.not. wanted%quiet, 0.0_dp)
         do
             do i = 1, size(children)
