@@ -9,7 +9,7 @@ module continuous_chain
     use block_motion, only : fill_block, moving_block, set_growing_weights, set_up, unknowns_of
     use block_steps, only : implicit_rates, shortest
     use chain_rates, only : chain_equations
-    use continuous_steps, only : continuous, lost, tight
+    use continuous_steps, only : continuous, creep_weight, lost
     use friction_mod, only : friction_bad_state, friction_facts, friction_no_convergence, &
         friction_no_rate, law_facts, statev_u_n
     use phase_changes, only : change_phase, first_root, root_bracket, switch_values, switches
@@ -246,8 +246,7 @@ contains
         if (self%reloaded) then
             pressed = min(1.0_dp, max(normal, self%block%equations%open_below) / self%largest)
             self%rodas%natural(elastic, :) = self%elastic_sizes * pressed
-            self%rodas%weights(elastic, :) = 1.0_dp / (self%elastic_sizes * min(self%rtol, tight &
-                * pressed))
+            self%rodas%weights(elastic, :) = creep_weight(self%elastic_sizes, self%rtol, pressed)
         end if
         do i = 1, size(self%now, 2)
             call set_growing_weights(along, self%rtol, self%rodas%natural(:, i), self%now(:, i), &

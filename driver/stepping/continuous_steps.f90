@@ -25,7 +25,7 @@ module continuous_steps
     implicit none
     private
 
-    public :: continuous
+    public :: continuous, creep_weight
 
     !> Part of the time that is lost in round-off, but for the steps that it takes to follow a decay
     !> which has gone on for as long.
@@ -33,9 +33,6 @@ module continuous_steps
     !> Part of it that a step takes which follows what happens at once.
     real(dp), parameter :: at_once = 1.0e3_dp * shortest
     real(dp), parameter :: quarter = 2.0_dp * atan(1.0_dp)   !! of a swing [rad]
-    !> What counts for slip that goes with an exponential is traction over pressure: its tolerated
-    !> error, part of friction.
-    real(dp), parameter, public :: tight = 1.0e-4_dp
 
     type, extends(block_integrator) :: continuous
         real(dp) :: limit = 0.0_dp   !! where the step ends at the latest [T]
@@ -444,14 +441,24 @@ contains
             self%block%equations%least_pressure)
         if (self%block%equations%surface%traits%stiff) then
             self%pressed = min(1.0_dp, pressure / self%largest)
-            self%weights(elastic) = 1.0_dp / (self%natural(elastic) * min(self%rtol, tight &
-                * self%pressed))
+            self%weights(elastic) = creep_weight(self%natural(elastic), self%rtol, self%pressed)
         else if (self%block%equations%surface%traits%memory == 1) then
             ! R is traction over strength, and how it grows from a touchdown on is not forgotten
             self%weights(elastic) = 1.0_dp / (self%natural(elastic) * self%rtol * min(1.0_dp, &
                 max(pressure, self%block%equations%surface%law%cohesion) / self%largest))
         end if
     end subroutine set_weights
+
+    !> Inverse of the tolerated error of the contact's spring where slip goes with an exponential:
+    !> what counts for that is traction over pressure [1/L].
+    elemental real(dp) function creep_weight(natural, rtol, pressed) result(weight)
+        real(dp), intent(in) :: natural   !! elastic displacement, under the largest load [L]
+        real(dp), intent(in) :: rtol
+        real(dp), intent(in) :: pressed   !! pressure, part of the largest
+        real(dp), parameter :: tight = 1.0e-4_dp   !! tolerated error of it, part of friction
+
+        weight = 1.0_dp / (natural * min(rtol, tight * pressed))
+    end function creep_weight
 
     !> Velocity or traction of a contact that creeps. Of a rigid one each tells the other: the
     !> traction is the unknown, unless its tolerated error leaves the velocity open by many times
